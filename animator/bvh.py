@@ -1,7 +1,7 @@
 """BVH: a run's motion for Blender and other animation programs (T28)."""
 
 from collections.abc import Iterator, Sequence
-from typing import Any, Final, Literal
+from typing import Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -85,7 +85,9 @@ def euler_zxy_deg(turns: Sequence[Rotation]) -> NDArray[np.float64]:
     return angles
 
 
-def _nearest(angles_deg: NDArray[np.float64], before_deg: NDArray[np.float64]) -> Any:
+def _nearest(
+    angles_deg: NDArray[np.float64], before_deg: NDArray[np.float64]
+) -> NDArray[np.float64]:
     """Of the triples (..., 3) that mean one turn, those next to others."""
     flipped = np.stack(
         [angles_deg[..., 0] + 180.0, 180.0 - angles_deg[..., 1], angles_deg[..., 2] + 180.0], -1

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 from common.packages import PACKAGES, ROOT
 
@@ -79,7 +79,7 @@ def source_of(module: str) -> Source:
     return Source(hashlib.sha256(content).digest(), tuple(sorted(set(_imports(content)))))
 
 
-def add(digest: Any, name: str, content: bytes) -> None:
+def add(digest: "hashlib._Hash", name: str, content: bytes) -> None:
     """Add a name and a content, each with its length: two files are never taken for one."""
     for part in (name.encode(), content):
         digest.update(len(part).to_bytes(8, "little"))

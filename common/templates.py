@@ -2,12 +2,11 @@
 
 from collections.abc import Mapping
 from functools import cache
-from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 
-def rendered(package: str, name: str, given: Mapping[str, Any]) -> str:
+def rendered(package: str, name: str, given: Mapping[str, object]) -> str:
     """A template filled in: what is given is escaped, and a name that is not given is a fault.
 
     Args:

@@ -1,8 +1,8 @@
 """A posture model on disk: one npz of numbers with a JSON header, and no pickle."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from pathlib import Path
-from typing import Any, Final, Literal
+from typing import Final, Literal
 
 import msgspec
 import numpy as np
@@ -97,8 +97,8 @@ def _read(path: Path) -> PostureModel:
     header = _header(held["header"].tobytes())
     arrays = {name: held[name] for name in _shapes(header)}
     _refuse_false_arrays(arrays, _shapes(header))
-    kind: Any = KINDS[header.card.recognizer]
-    model: PostureModel = kind(names=header.postures, card=header.card, **arrays)
+    kind: Callable[..., PostureModel] = KINDS[header.card.recognizer]
+    model = kind(names=header.postures, card=header.card, **arrays)
     return model
 
 

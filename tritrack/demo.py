@@ -2,13 +2,14 @@
 
 import tempfile
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import msgspec
 from rich.console import Console
 
 from common.config.part_settings import PageSettings
 from common.config.settings import Settings
+from common.npz_file import Facts
 from runtime.live.free_ports import free_settings
 from runtime.live.session import live
 from runtime.store.other_run import refuse_other, run_of, run_told
@@ -58,7 +59,7 @@ def refuse_other_than_demo(out: Path) -> None:
         refuse_other(out, run_of("demo", [clip]))
 
 
-def run_demo(out: Path, page: bool, console: Console, wait: bool = True) -> dict[str, Any]:
+def run_demo(out: Path, page: bool, console: Console, wait: bool = True) -> Facts:
     """Render a clip, run the whole system on it, and check what it says.
 
     Args:

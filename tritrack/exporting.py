@@ -4,17 +4,22 @@ import csv
 import io
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any, Final, Literal, NamedTuple
+from typing import TYPE_CHECKING, Final, Literal, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from animator.exchange import LibraryMissing
 from common.atomic_file import refuse_to_replace, replacing, unwritten
 from common.body.body import ANGLE_NAMES, JOINT_NAMES
 from common.body.extremities import EXTREMITY_NAMES
+from common.npz_file import Arrays, Facts
 from runtime.store.joint_arrays import all_joints_m
 from runtime.store.past_run import PastRun, open_run
 from runtime.store.run_exports import OWN_NAMES, Format
+
+if TYPE_CHECKING:
+    from animator.skeleton.bones import Motion, Skeleton
 
 Scale = Literal["m", "cm"]
 ENDINGS: Final[dict[Format, tuple[str, ...]]] = {
@@ -32,7 +37,7 @@ class Written(NamedTuple):
     """What an export comes to."""
 
     content: bytes
-    facts: dict[str, Any]
+    facts: Facts
     """What the command tells; `frames` is among them."""
     beside: tuple[str, bytes] | None = None
     """Ending and content of a second file."""
@@ -45,7 +50,7 @@ def export(
     *,
     scale: Scale = "m",
     replace: bool = False,
-) -> dict[str, Any]:
+) -> Facts:
     """Write a run in another format, as `tritrack export` does.
 
     Examples:
@@ -78,7 +83,7 @@ def export(
 
 def export_run(
     folder: Path, to: Format, out: Path | None, scale: Scale = "m", replace: bool = False
-) -> dict[str, Any]:
+) -> Facts:
     """Write a run in another format.
 
     Args:
@@ -132,10 +137,10 @@ def _refuse_ending(path: Path, to: Format) -> None:
 class _Animated(NamedTuple):
     """A run as a skeleton that moves."""
 
-    skeleton: Any
-    motion: Any
+    skeleton: "Skeleton"
+    motion: "Motion"
     step_s: float
-    facts: dict[str, Any]
+    facts: Facts
 
 
 def _animated(run: PastRun) -> _Animated:
@@ -212,7 +217,7 @@ def _c3d(run: PastRun, _name: str, _scale: Scale) -> Written:
     return Written(c3d_bytes(joints_m, step_s), facts)
 
 
-def _markers(run: PastRun) -> tuple[Any, float, dict[str, Any]]:
+def _markers(run: PastRun) -> tuple[NDArray[np.float64], float, Facts]:
     """The run's joints in even steps with its gaps, seconds a frame, and what is told of them."""
     from animator.even_steps import NoMotion, even_steps, with_gaps
     from animator.skeleton.planted_feet import planted
@@ -252,7 +257,7 @@ def _csv(run: PastRun, _name: str, _scale: Scale) -> Written:
     return Written(text.getvalue().encode(), {"frames": len(run.poses["frame"])})
 
 
-def _csv_rows(poses: dict[str, Any]) -> Iterator[list[Any]]:
+def _csv_rows(poses: Arrays) -> Iterator[list[int | str]]:
     names = ["score", "joints_m", "angles_deg", "confidence"]
     names += [name for name in ("extremities_m", "extremities_confidence") if name in poses]
     for i, frame in enumerate(poses["frame"]):
@@ -266,7 +271,7 @@ def _csv_rows(poses: dict[str, Any]) -> Iterator[list[Any]]:
         ]
 
 
-def _cells(values: Any, digits: int) -> list[str]:
+def _cells(values: ArrayLike, digits: int) -> list[str]:
     """Numbers as a spreadsheet takes them; one that is not known is an empty cell."""
     return [f"{value:.{digits}f}" if np.isfinite(value) else "" for value in np.ravel(values)]
 

@@ -1,7 +1,7 @@
 """A recorded run on the live page, which plays it: pause, speed, any moment, angles over time."""
 
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 from rich.console import Console
 
@@ -10,6 +10,7 @@ from animator.scene import Snapshot
 from common.bus.instant import Instant
 from common.bus.messages import Report
 from common.bus.process import ProcessContext, process
+from common.npz_file import Facts
 from common.rig.camera import Rig
 from runtime.store.past_run import open_run
 from runtime.store.recording import Recording, read_recording
@@ -19,7 +20,7 @@ MOST_BYTES: Final = 160_000_000
 """Of the frames that the page keeps for a browser: some ten minutes, as many as a browser does."""
 
 
-def replay_on_page(folder: Path, port: int, console: Console) -> dict[str, Any]:
+def replay_on_page(folder: Path, port: int, console: Console) -> Facts:
     """Show a recorded run on a page of this machine, until Ctrl-C.
 
     Args:

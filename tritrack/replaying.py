@@ -5,7 +5,7 @@ import time
 from collections import defaultdict, deque
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import msgspec
 from rich.console import Console
@@ -18,6 +18,7 @@ from common.bus.messages import Body, Message, Moment, Report
 from common.bus.rate import wait_until
 from common.config.part_settings import BusSettings
 from common.method import METHODS
+from common.npz_file import Facts
 from integrator import merge, merge_state, opening_posture
 from integrator.live_rig.rig_change import set_back, with_rig
 from integrator.merge_state import Start
@@ -38,7 +39,7 @@ class Replayed(NamedTuple):
     scale_source: str
 
 
-def replay_run(folder: Path, out: Path | None, force: bool = False) -> dict[str, Any]:
+def replay_run(folder: Path, out: Path | None, force: bool = False) -> Facts:
     """Send a run's recorded reports through the integrator again.
 
     Args:
@@ -114,9 +115,7 @@ def _near(reports: Sequence[Report], body: Body, tolerance_s: float) -> Report |
     return near[-1] if near else None
 
 
-def replay_on_bus(
-    folder: Path, bus_settings: BusSettings, speed: float, console: Console
-) -> dict[str, Any]:
+def replay_on_bus(folder: Path, bus_settings: BusSettings, speed: float, console: Console) -> Facts:
     """Say again all that a recorded run said, at its pace, to whoever listens at an endpoint.
 
     Messages are as recorded but for `clock_s`, which is when they are said.

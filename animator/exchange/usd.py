@@ -6,7 +6,7 @@ Metres, +y up, the figure faces +z; one time code a frame, the first is 0.
 
 import tempfile
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,9 @@ from animator.exchange import LibraryMissing
 from animator.exchange.sticks import COLOUR, Sticks, sticks_of
 from animator.skeleton.bones import Motion, Skeleton, offset_m, rest_origins_m
 from animator.turns import unbroken
+
+if TYPE_CHECKING:
+    from pxr import Usd, UsdGeom, UsdSkel
 
 
 def usd_bytes(skeleton: Skeleton, motion: Motion, step_s: float, ending: str = ".usdc") -> bytes:
@@ -52,7 +55,7 @@ def usd_bytes(skeleton: Skeleton, motion: Motion, step_s: float, ending: str = "
     return _written(stage, ending)
 
 
-def _define_skeleton(stage: Any, skeleton: Skeleton) -> Any:
+def _define_skeleton(stage: "Usd.Stage", skeleton: Skeleton) -> "UsdSkel.Skeleton":
     from pxr import UsdSkel, Vt
 
     bones = UsdSkel.Skeleton.Define(stage, "/Body/Skeleton")
@@ -63,7 +66,7 @@ def _define_skeleton(stage: Any, skeleton: Skeleton) -> Any:
     return bones
 
 
-def _define_motion(stage: Any, skeleton: Skeleton, motion: Motion) -> Any:
+def _define_motion(stage: "Usd.Stage", skeleton: Skeleton, motion: Motion) -> "UsdSkel.Animation":
     """Of each bone its place and turn in its parent's axes, frame by frame."""
     from pxr import UsdSkel, Vt
 
@@ -82,7 +85,7 @@ def _define_motion(stage: Any, skeleton: Skeleton, motion: Motion) -> Any:
     return moves
 
 
-def _define_figure(stage: Any, sticks: Sticks) -> Any:
+def _define_figure(stage: "Usd.Stage", sticks: Sticks) -> "UsdGeom.Mesh":
     from pxr import Gf, UsdGeom, UsdSkel, Vt
 
     figure = UsdGeom.Mesh.Define(stage, "/Body/Sticks")
@@ -119,7 +122,7 @@ def _shifts(places_m: NDArray[np.float64]) -> NDArray[np.float64]:
     return shifts
 
 
-def _written(stage: Any, ending: str) -> bytes:
+def _written(stage: "Usd.Stage", ending: str) -> bytes:
     with tempfile.TemporaryDirectory() as folder:  # the library writes to paths alone
         path = Path(folder) / f"body{ending}"
         stage.GetRootLayer().Export(str(path))

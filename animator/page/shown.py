@@ -2,10 +2,11 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any, Final
+from typing import Final
 
 import cv2
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from animator.hands_and_feet import hands_and_feet
 from animator.page.inset import limb_contours, limb_ends
@@ -160,7 +161,9 @@ def _views(
     return views
 
 
-def _view(report: Report, body: Body, limbs: list[Any], picture: Picture | None) -> ShownView:
+def _view(
+    report: Report, body: Body, limbs: Sequence[NDArray[np.float64]], picture: Picture | None
+) -> ShownView:
     own = report.viewer - 1
     joints = [
         as_worked_on(np.array(place), report.upright)
@@ -209,7 +212,7 @@ def _pyramid(camera: Camera, size: tuple[int, int]) -> list[Numbers]:
     return [_rounded(seen.position), *(_rounded(corner) for corner in world)]
 
 
-def _rounded(values: Any, digits: int = 4) -> Numbers:
+def _rounded(values: ArrayLike, digits: int = 4) -> Numbers:
     """Numbers in a row, none longer than it must be."""
     rounded: Numbers = np.asarray(values, np.float64).ravel().round(digits).tolist()
     return rounded

@@ -142,12 +142,12 @@ class RetouchScene:
         away = np.array([0.0, 0.0, tall_m / (2 * math.tan(FOV_RAD / 2))])
         return {"position": middle + away, "look_at": middle}  # looks along when it is moved
 
-    def _stand_back(self, client: Any) -> None:
+    def _stand_back(self, client: viser.ClientHandle) -> None:
         """Show all of it in a phone's window too, above the panel; again when that is turned, and
         when a browser under load tells its window's size late or by and by."""
         stands = 1.0
 
-        def look(_: Any = None) -> None:
+        def look(_: object = None) -> None:
             nonlocal stands
             narrow = min(client.camera.aspect, 1.0)
             if abs(narrow - stands) > RESIZED:

@@ -3,7 +3,7 @@
 import logging
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any, Final
+from typing import Final
 
 import rich
 import viser
@@ -41,7 +41,7 @@ def _guard(server: viser.ViserServer) -> None:
     """Close on strangers before anything is sent; viser has no setting for it."""
     sockets = server._websock_server
 
-    async def refuse_strangers(client: Any) -> None:
+    async def refuse_strangers(client: viser.ClientHandle) -> None:
         connection = sockets._live_connections[client.client_id]
         headers = connection.request.headers
         if not is_own(headers.get("Host", ""), headers.get("Origin", "")):

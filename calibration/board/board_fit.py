@@ -1,7 +1,7 @@
 """All cameras and all places of the board at once, so that its corners are where they were seen."""
 
 from collections.abc import Sequence
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import cv2
 import numpy as np
@@ -165,7 +165,9 @@ def _prior(layout: _Layout, lenses: Vector, size_px: tuple[int, int]) -> tuple[V
     return np.array(rows), np.array(wanted)
 
 
-def _shown(layout: _Layout, unknown: Vector, sight: Sight) -> tuple[Vector, Vector, Any]:
+def _shown(
+    layout: _Layout, unknown: Vector, sight: Sight
+) -> tuple[Vector, Vector, Sequence[Vector]]:
     """Where a sight's corners would be, (n, 2), the slopes of that, and those of the places."""
     fx, fy, cx, cy, k1, k2 = unknown[layout.lens(sight.camera)]
     board = unknown[layout.board(sight.rest)]

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Iterator, Sequence
 from difflib import get_close_matches
-from typing import Any, Final
+from typing import Final
 
 import msgspec
 from msgspec import inspect
@@ -120,7 +120,7 @@ def _below(info: inspect.Type, step: Step) -> Iterator[inspect.Type]:
         yield from info.item_types[step : step + 1]
 
 
-def _values(info: inspect.Type) -> Iterator[Any]:
+def _values(info: inspect.Type) -> Iterator[str | int | None]:
     if isinstance(info, inspect.LiteralType):
         yield from info.values
 

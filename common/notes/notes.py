@@ -2,7 +2,7 @@
 
 import itertools
 import math
-from typing import Any, Final, Literal, get_args
+from typing import Final, Literal, get_args
 
 import msgspec
 
@@ -128,5 +128,5 @@ def _tidied(notes: Notes) -> Notes:
     return Notes(notes.video, tuple(kept))
 
 
-def _in_a_picture(value: Any) -> bool:
+def _in_a_picture(value: float) -> bool:
     return math.isfinite(value) and abs(value) <= MOST_PX

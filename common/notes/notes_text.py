@@ -59,7 +59,7 @@ def _update(table: Any, note: Note) -> None:
                 table[name][key] = value
 
 
-def _plain(value: Any) -> Any:
+def _plain(value: object) -> object:
     return list(value) if isinstance(value, tuple) else value
 
 

@@ -1,12 +1,15 @@
 """What all bodies of the Anny model share: its shapes, one surface, its bones."""
 
 from functools import cache
-from typing import Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import Vector
+
+if TYPE_CHECKING:
+    import torch
 
 TOPOLOGY: Final = "notoes"
 """Anny's surface whose feet have no toes."""
@@ -26,7 +29,7 @@ class NoAnny(Exception):
 class Anatomy(NamedTuple):
     """A surface on bones, and the model that shapes them."""
 
-    model: Any
+    model: "torch.nn.Module"
     """Of the package: a torch module."""
     kept: NDArray[np.int64]
     """(v,) which of its vertices are used."""

@@ -1,10 +1,12 @@
 """The angles of a run over time, drawn: a walk shows its steps (T26)."""
 
 import io
-from collections.abc import Mapping
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
+
+from common.npz_file import Arrays
 
 SHOWN: Final = {
     "hip, forwards": "hip_x",
@@ -16,7 +18,7 @@ SHOWN: Final = {
 SIDES: Final = {"left": "tab:blue", "right": "tab:orange"}
 
 
-def angle_plot(poses: Mapping[str, Any]) -> bytes:
+def angle_plot(poses: Arrays) -> bytes:
     """A PNG of the joints' angles.
 
     Args:
@@ -40,7 +42,7 @@ def angle_plot(poses: Mapping[str, Any]) -> bytes:
     return drawn.getvalue()
 
 
-def _span(time_s: Any) -> tuple[float, float]:
+def _span(time_s: NDArray[np.float64]) -> tuple[float, float]:
     """From the first to the last moment; something to draw on where that is one."""
     first, last = (float(time_s[0]), float(time_s[-1])) if len(time_s) else (0.0, 0.0)
     return first, max(last, first + 0.1)

@@ -2,7 +2,7 @@
 
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import cv2
 import numpy as np
@@ -14,6 +14,7 @@ from animator.inbetween import at, between, key_frames
 from animator.skeleton.bones import joints_of
 from common.atomic_file import replacing
 from common.body.body import JOINT_NAMES
+from common.npz_file import Arrays
 from runtime.store.joint_arrays import all_joints_m
 from runtime.store.runs import unwritable
 from runtime.terminal import json_text
@@ -29,7 +30,7 @@ FLAG: Final = (0, 0, 255)
 """Pixels that were never uncovered are hatched in this colour."""
 
 
-def write_files(folder: Path, arrays: dict[str, Any], background: Background | None) -> list[str]:
+def write_files(folder: Path, arrays: Arrays, background: Background | None) -> list[str]:
     """Write the angles' curves where matplotlib is, the background if any, and the animation.
 
     None of an earlier run stays: who opens the folder would take it for this one's.
@@ -65,7 +66,7 @@ def marked(background: Background) -> NDArray[np.uint8]:
     return picture
 
 
-def _animate(folder: Path, arrays: dict[str, Any]) -> list[str]:
+def _animate(folder: Path, arrays: Arrays) -> list[str]:
     """Write the animation and that of the key frames alone; what stood in the way."""
     try:
         skeleton, motion, steps = steady(all_joints_m(arrays), arrays["time_s"])

@@ -11,6 +11,7 @@ from animator.inbetween import key_frames
 from animator.take import CONFIDENT, Take, depth_of, hidden_of
 from common.body.body import LIMBS
 from common.notes.notes import Notes
+from common.npz_file import Facts
 
 JOINTS_BY_HAND: Final = 14
 """Places that earlier methods had the user point at in every key frame (4.3)."""
@@ -80,7 +81,7 @@ def ledger(take: Take, notes: Notes) -> Ledger:
 def given_inputs(notes: Notes) -> Count:
     """The inputs in the notes: values that are not what held before."""
     count = {"orientation": 0, "depth": 0, "joints": 0}
-    holds: dict[str, Any] = {}
+    holds: Facts = {}
     for note in notes.note:
         said: list[tuple[str, str, Any]] = [("orientation", "orientation", note.orientation)]
         said += [("depth", name, way) for name, way in note.depth.items()]
@@ -104,13 +105,13 @@ def open_inputs(take: Take) -> Count:
     )
 
 
-def inputs(values: Sequence[Any] | NDArray[Any], wanted: NDArray[np.bool_]) -> int:
+def inputs(values: Sequence[str | float] | NDArray[np.str_ | np.float64], wanted: NDArray[np.bool_]) -> int:
     """How many sticky inputs say `values` in the frames where that is wanted.
 
     An input holds on while the values agree with it; frames of no value ("" or 0) agree with
     anything; where a frame disagrees that nobody asked about, the input is given up.
     """
-    holds: Any = None
+    holds: str | float | None = None
     count = 0
     for value, asked in zip(values, wanted, strict=True):
         if value and value != holds:
@@ -133,7 +134,7 @@ def _by_the_thesis(take: Take) -> Count:
     )
 
 
-def facts_of(made: Ledger) -> dict[str, Any]:
+def facts_of(made: Ledger) -> Facts:
     """A ledger for a summary: the video's own counts, and the thesis's beside them."""
     return {
         "inputs": msgspec.to_builtins(made.given) | {"all": made.given.total},
@@ -147,7 +148,7 @@ def facts_of(made: Ledger) -> dict[str, Any]:
     }
 
 
-def line_of(facts: dict[str, Any]) -> str:
+def line_of(facts: Facts) -> str:
     """The ledger's facts in one line."""
     return (
         f"inputs: {facts['inputs']['all']} given, {facts['inputs_that_could_help']['all']} more "

@@ -3,7 +3,7 @@
 import shlex
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import cv2
 import msgspec
@@ -22,6 +22,7 @@ from common.config.settings import Settings
 from common.config.settings_error import SettingsError
 from common.notes.notes import Notes
 from common.notes.notes_file import NotesError, load_notes, notes_path, save_notes
+from common.npz_file import Facts
 from common.rig.camera import PAPER_ROTATIONS, Camera, Matrix
 from common.video.clip_facts import Clip
 from common.video.clip_sources import ClipError, first_camera
@@ -47,7 +48,7 @@ class RetouchError(RuntimeError):
 
 def retouch(
     folder: Path, video: Path | None, notes_file: Path | None, port: int, console: Console
-) -> dict[str, Any]:
+) -> Facts:
     """Show a run on a page that edits the notes of its video, until Ctrl-C.
 
     Args:

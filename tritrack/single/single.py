@@ -1,8 +1,8 @@
 """Any video of one camera that stands still, to an animation: the thesis's way (T1)."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import msgspec
 import numpy as np
@@ -16,6 +16,7 @@ from common.config.settings_error import SettingsError
 from common.method import METHODS
 from common.notes.notes import Notes
 from common.notes.notes_file import NotesError, load_notes, notes_path
+from common.npz_file import Arrays, Facts
 from common.video.clip_sources import (
     CLIP_CAMERAS,
     ClipError,
@@ -83,7 +84,7 @@ def single_all(
     given: Given,
     settings: Settings,
     console: Console,
-) -> dict[str, Any]:
+) -> Facts:
     """Follow the person in video after video, write a run folder for each, and say what it has.
 
     Of several, one that cannot be used is said and left out; the others are followed.
@@ -101,7 +102,7 @@ def single_all(
         ClipsFailed: At the end, when any of several could not be used.
         RunError, FilmError: When the results cannot be written.
     """
-    done: dict[str, Any] = {}
+    done: Facts = {}
     with Decoder() as decoder, bar(console) as progress:
         for path, begun in by_pass(progress, videos, PASSES):
             name = name_of(path)
@@ -182,7 +183,7 @@ def _run_of(job: Job) -> RunOf:
 
 def _kept(
     job: Job, wanted: Wanted, decoder: Decoder, console: Console, begun: Callable[[str], Tell]
-) -> dict[str, Any]:
+) -> Facts:
     """Follow one video; what is done of it is on disk while that goes on."""
     if job.masks is not None:
         return follow(job, wanted.folder, decoder, console, begun, Begun(InMemory(), {}))
@@ -197,7 +198,7 @@ def follow(
     console: Console,
     begun: Callable[[str], Tell],
     run: Begun,
-) -> dict[str, Any]:
+) -> Facts:
     """Follow one video and write its run folder; what the summary tells of it, and the overlay.
 
     Poses come first: whatever happens to the pictures and films, these are kept.
@@ -238,13 +239,13 @@ def _found(job: Job, decoder: Decoder, begun: Callable[[str], Tell], work: Work)
     return follow_clip(film, job.settings, method, reel, heard)
 
 
-def mean_confidence(arrays: Mapping[str, Any]) -> float:
+def mean_confidence(arrays: Arrays) -> float:
     """The mean confidence of the joints in the frames that have a pose; 0 where none has."""
     posed = np.isfinite(arrays["joints_m"]).all(axis=(1, 2))
     return round(float(arrays["confidence"][posed].mean()), 3) if posed.any() else 0.0
 
 
-def line_of(name: str, facts: Mapping[str, Any]) -> str:
+def line_of(name: str, facts: Facts) -> str:
     """What was followed, how well, and what to open, in one line."""
     share = facts["frames_with_pose"] / max(1, facts["frames"])
     believed = facts.get("believed")

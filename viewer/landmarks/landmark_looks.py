@@ -3,7 +3,7 @@
 import os
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +11,9 @@ from numpy.typing import NDArray
 from common.body.body import OTHER_SIDE
 from common.config.settings_error import SettingsError
 from viewer.landmarks.landmark_window import PLANES, SIDE, Planes
+
+if TYPE_CHECKING:
+    from onnxruntime import InferenceSession
 
 CELLS: Final = 48
 """Cells of a joint's map, each way."""
@@ -26,7 +29,7 @@ Seen = tuple[NDArray[np.float32], NDArray[np.float32]]
 
 
 @lru_cache(maxsize=4)
-def opened(network: Path = SHIPPED) -> Any:
+def opened(network: Path = SHIPPED) -> "InferenceSession":
     """A network, on one core.
 
     onnxruntime would report its use to its maker, and keep a file for it, unless it is told not to

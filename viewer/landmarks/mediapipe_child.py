@@ -7,7 +7,7 @@ the picture of that frame is there. It answers each line with the points of the 
 import mmap
 import os
 import sys
-from typing import IO, Any
+from typing import IO, TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,9 @@ from viewer.landmarks.mediapipe_protocol import (
     REFUSED,
     encoded,
 )
+
+if TYPE_CHECKING:
+    from mediapipe.python.solutions.pose import Pose
 
 FULL = 1
 """The full one of MediaPipe's three models: the only one that its wheel carries."""
@@ -44,14 +47,14 @@ def main() -> None:
         say(answers, encoded(kind, int(line), points))
 
 
-def opened() -> Any:
+def opened() -> "Pose":
     """MediaPipe's pose estimator, which follows one person from frame to frame."""
     from mediapipe.python.solutions.pose import Pose
 
     return Pose(model_complexity=FULL, smooth_landmarks=False)
 
 
-def looked(pose: Any, picture: NDArray[np.uint8]) -> NDArray[np.float32] | None:
+def looked(pose: "Pose", picture: NDArray[np.uint8]) -> NDArray[np.float32] | None:
     """The 33 points of the person in a picture (H, W, 3) BGR; None where nobody is seen.
 
     Returns:

@@ -1,6 +1,6 @@
 """Regions of a coarse picture in which somebody may be, and those that are one person's."""
 
-from typing import Any, Final
+from typing import Final
 
 import cv2
 import numpy as np
@@ -46,7 +46,7 @@ def chosen(
     return own.view(np.uint8)[labels], 1 + int(np.count_nonzero(large & ~own))
 
 
-def boxes_of(stats: Any) -> Any:
+def boxes_of(stats: NDArray[np.int32]) -> NDArray[np.int32]:
     """(n, 4), LEFT to BOTTOM of what OpenCV counts of each region."""
     boxes = stats[:, :4].copy()
     boxes[:, RIGHT:] += boxes[:, :RIGHT]
