@@ -17,12 +17,11 @@ from common.bus.bus import Bus, BusError, open_client
 from common.bus.control_messages import Answer, Cameras, Command, Pulse
 from common.bus.message_codec import TOPICS
 from common.bus.messages import Body, Performance, Picture, Posture, Report
-from common.bus.process import READY_S, Heart, ProcessContext, process
+from common.bus.process import READY_S, Heart, ProcessContext, process, settle
 from common.bus.rate import Pace
 from common.config.settings import Settings
 from common.npz_file import Facts
 from common.rig.camera import paper_rig
-from common.settled import settle
 
 HEAR_S: Final = 0.05
 PERIOD_S: Final = 1 / TOPICS[Body].hz

@@ -6,8 +6,8 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from animator.skeleton.planted_feet import nearest
 from common.body.body import JOINT_NAMES, LIMB_ENDS, LIMBS, Vector
-from common.nearest_rows import nearest
 from common.notes.notes import Depth, Held, Notes, held
 from common.npz_file import Arrays
 from common.rig.camera import PAPER_ROTATIONS, TOWARDS

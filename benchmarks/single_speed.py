@@ -17,7 +17,7 @@ os.environ.setdefault("NUMBA_NUM_THREADS", "1")
 from rich.console import Console
 
 from common.config.config_file import load
-from common.config.settings_error import SettingsError
+from common.config.part_settings import SettingsError
 from common.video.clip_sources import ClipError
 from common.video.pictures import DecoderDied, Undecodable
 from lab.bench.single_bench import followed, parts_ms

@@ -26,10 +26,10 @@ from threadpoolctl import threadpool_limits
 from common.bus.instant import Instant
 from common.bus.message_codec import decode, encode
 from common.bus.messages import Body, Guide, Report, ViewerNumber
+from common.bus.process import settle
 from common.config.part_settings import PageSettings
 from common.config.settings import Settings
 from common.method import METHODS
-from common.settled import settle
 from common.video.clip_facts import Clip
 from common.video.clips import open_clip
 from common.video.decoding import Decoder

@@ -21,8 +21,8 @@ from threadpoolctl import threadpool_limits
 from common.bus.instant import Instant
 from common.bus.message_codec import decode, encode
 from common.bus.messages import Body, Guide, Report
+from common.bus.process import settle
 from common.config.settings import Settings
-from common.settled import settle
 from common.video.clips import open_clip
 from integrator import merge
 from recognizer import __main__ as recognizer_process

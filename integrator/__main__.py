@@ -7,11 +7,10 @@ from typing import Final
 from common.bus.bus import Bus, open_hub
 from common.bus.control_messages import Cameras, Command
 from common.bus.messages import Guide, ViewerNumber
-from common.bus.process import PAGE_S, Heart, ProcessContext, process
+from common.bus.process import PAGE_S, Heart, ProcessContext, process, settle
 from common.bus.rate import Pace
 from common.config.settings import Settings
 from common.method import METHODS
-from common.settled import settle
 from common.video.clip_facts import Clip, uprights_of
 from integrator import commands, diagnostics, merge, merge_state, opening_posture
 from integrator.frame_numbers import frame_times

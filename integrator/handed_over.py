@@ -12,7 +12,7 @@ from common.body.body import Bdp
 from common.bus.control_messages import Ended
 from common.bus.messages import ScaleSource
 from common.rig.camera import Rig
-from common.rig.picture_shift import Shift
+from common.rig.upright import Shift
 from integrator.merge_state import State
 from integrator.opening_posture import Opening
 

@@ -14,11 +14,10 @@ from common.bus import clock
 from common.bus.bus import Bus, open_client
 from common.bus.inbox import Inbox
 from common.bus.messages import Body, Performance, Posture
-from common.bus.process import READY_S, Heart, ProcessContext, process
+from common.bus.process import READY_S, Heart, ProcessContext, process, settle
 from common.bus.rate import Pace
 from common.config.settings import Settings
 from common.method import METHODS
-from common.settled import settle
 from recognizer import events, model_rate, spotting
 from recognizer.features import ROW_NAMES, rows
 from recognizer.model_file import ModelError, load

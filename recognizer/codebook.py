@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recognizer.features import FEATURE_NAMES, Features
-from recognizer.learning_error import LearningError
 
 Codebook = NDArray[np.float64]
 """The codewords: (SYMBOLS, 16); a symbol is the number of a row. Its space is that of
@@ -24,6 +23,10 @@ would tell their motions apart: with 1, 2, 3 and 4, and the best width of sharin
 
 STARTS: Final = 4
 """Runs of k-means from different codewords; the tightest is kept."""
+
+
+class LearningError(ValueError):
+    """Clips that no model can be learnt from or tested on; the text says why and what to give."""
 
 
 def fit(seen: Features, seed: int = 0, count: int = SYMBOLS) -> Codebook:

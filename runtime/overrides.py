@@ -4,8 +4,8 @@ from pathlib import Path
 
 import msgspec
 
+from common.config.part_settings import SettingsError
 from common.config.settings import LANDMARK_SOURCES, NETWORK, Settings
-from common.config.settings_error import SettingsError
 from common.method import Mode
 
 

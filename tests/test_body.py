@@ -22,6 +22,7 @@ from common.body.body import (
     Elliptic,
     Round,
     body_of_lengths,
+    lean_deg,
     rest_pose,
     wrapped_deg,
 )
@@ -124,3 +125,24 @@ def test_a_wrapped_angle_is_the_same_direction_in_one_turn(angle: float, turns: 
 
 def test_half_a_turn_is_180_from_both_sides() -> None:
     assert [wrapped_deg(angle) for angle in (180.0, -180.0, 540.0)] == [180.0] * 3
+
+
+@pytest.mark.parametrize(
+    ("right", "down", "deg"),
+    [
+        (0.0, -5.0, 0.0),
+        (29.0, -52.0, 0.0),  # 29.1
+        (30.0, -51.0, 30.466),
+        (-30.0, -51.0, -30.466),
+        (4.0, 0.0, 90.0),
+        (-4.0, 3.0, -126.870),
+        (0.0, 2.0, 180.0),
+        (0.0, 0.0, 0.0),
+        (0.0, -0.0, 0.0),
+    ],
+)
+def test_a_trunk_leans_clockwise_by_its_angle_from_30_degrees_on(
+    right: float, down: float, deg: float
+) -> None:
+    """Rows grow down: upright is a neck above its pelvis."""
+    assert lean_deg(right, down) == pytest.approx(deg, abs=1e-3)

@@ -25,8 +25,7 @@ from common.bus.inbox import BOUND, Alive, Inbox
 from common.bus.mailbox import Mailbox
 from common.bus.message_codec import MAX_BYTES, encode
 from common.bus.messages import Guide, Picture, Posture, Report
-from common.config.part_settings import BusSettings
-from common.config.settings_error import SettingsError
+from common.config.part_settings import BusSettings, SettingsError
 
 ROOM = "hall"
 BLOCK = zenoh.CongestionControl.BLOCK
@@ -262,7 +261,7 @@ PART = """
 import sys, time
 from common.bus.bus import open_client
 from common.config.part_settings import BusSettings
-from common.config.settings_error import SettingsError
+from common.config.part_settings import SettingsError
 with open_client(BusSettings(sys.argv[1]), sys.argv[2], 5.0) as bus:
     bus.announce("viewer-1")
     time.sleep(60)

@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 from acting import performances
 
-from recognizer.codebook import SYMBOLS, WEIGHTS, fit, symbols
+from recognizer.codebook import SYMBOLS, WEIGHTS, LearningError, fit, symbols
 from recognizer.features import FEATURE_NAMES, features
-from recognizer.learning_error import LearningError
 
 
 @pytest.fixture(scope="module")

@@ -7,8 +7,8 @@ import pytest
 
 from common.config import config_file
 from common.config.config_file import load
+from common.config.part_settings import SettingsError
 from common.config.settings import Settings
-from common.config.settings_error import SettingsError
 
 CONFIGS = Path(__file__).parents[1] / "configs"
 RUNS = sorted(path for path in CONFIGS.glob("*.toml") if "tritrack live" in path.read_text())

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from common.config.settings_error import SettingsError
+from common.config.part_settings import SettingsError
 from runtime.faults import Fault, Unfollowed, code_of, refuse_unfollowed, told
 
 

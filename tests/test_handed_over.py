@@ -10,7 +10,7 @@ from common.bus.control_messages import Ended
 from common.config.settings import Settings
 from common.method import METHODS
 from common.rig.camera import paper_rig
-from common.rig.picture_shift import Shift
+from common.rig.upright import Shift
 from integrator import merge_state
 from integrator.handed_over import NAME, Estate
 from integrator.opening_posture import Opening

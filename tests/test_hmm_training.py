@@ -21,7 +21,7 @@ from lab.posture_models.hmm_training import (
     train_densities,
     train_symbols,
 )
-from recognizer.learning_error import LearningError
+from recognizer.codebook import LearningError
 
 
 def test_states_follow_each_other_or_any() -> None:

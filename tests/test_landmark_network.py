@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from common.body.body import OTHER_SIDE
-from common.config.settings_error import SettingsError
+from common.config.part_settings import SettingsError
 from synth.picture.backdrops import backdrop
 from synth.picture.composites import Composite, composite
 from synth.picture.picture_examples import SIDE_PX, PictureExample, picture_examples

@@ -12,8 +12,8 @@ from fake_mediapipe import install_fake
 from local_bus import LocalBus
 
 from common.bus.messages import Report
+from common.config.part_settings import SettingsError
 from common.config.settings import Settings
-from common.config.settings_error import SettingsError
 from common.method import DEFAULT
 from common.video.clip_facts import View
 from common.video.clips import open_clip

@@ -16,9 +16,8 @@ from rich.console import Console
 from spoiling import of_one_view
 
 from common.bus.messages import Body, ViewerNumber
-from common.config.part_settings import BusSettings, PageSettings
+from common.config.part_settings import BusSettings, PageSettings, SettingsError
 from common.config.settings import Settings
-from common.config.settings_error import SettingsError
 from runtime.live.free_ports import PortHeld, free_settings
 from runtime.live.launch import Heard, nothing_heard, run
 from runtime.live.process_table import Part

@@ -9,7 +9,7 @@ from acting import perform
 from lab.posture_models import lesson as lessons
 from lab.posture_models.learning import train
 from lab.posture_models.lesson import Lesson, taught
-from recognizer.learning_error import LearningError
+from recognizer.codebook import LearningError
 from recognizer.postures import PostureModel, name
 
 KNOWN = ("squat", "raise_right_lateral", "walk_toward")

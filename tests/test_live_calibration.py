@@ -16,7 +16,7 @@ from common.config.part_settings import PageSettings
 from common.config.settings import Settings
 from common.method import METHODS
 from common.rig.camera import Rig
-from common.rig.picture_shift import Shift
+from common.rig.upright import Shift
 from common.video.clip_facts import Clip, Meta, View
 from integrator import merge, merge_state
 from integrator.live_rig import live_calibration

@@ -7,9 +7,8 @@ import msgspec
 import pytest
 from typed import Called, instead, typed
 
-from common.config.part_settings import CameraSettings, PageSettings
+from common.config.part_settings import CameraSettings, PageSettings, SettingsError
 from common.config.settings import Settings
-from common.config.settings_error import SettingsError
 from common.video.clip_facts import Clip, Meta, View
 from common.video.clip_sources import ClipError
 from runtime.live.admission import LiveRefused

@@ -17,8 +17,8 @@ from staging import PERIOD_S, RIG
 
 from calibration.tracks.lateness import Clock
 from common.bus.messages import Body
+from common.config.part_settings import SettingsError
 from common.config.settings import Settings
-from common.config.settings_error import SettingsError
 from common.method import METHODS
 from common.video.clip_facts import Act, Clip, Meta, View
 from common.video.clip_sources import ClipError

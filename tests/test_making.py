@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from common.config.settings_error import SettingsError
+from common.config.part_settings import SettingsError
 from synth.write import ClipSet, SynthError
 from tritrack.making import make_clips
 

@@ -14,7 +14,7 @@ from fake_mediapipe import install_fake, shaded, view_of
 
 from common.body.body import JOINT_NAMES
 from common.bus.messages import Landmarks
-from common.config.settings_error import SettingsError
+from common.config.part_settings import SettingsError
 from viewer.landmarks.mediapipe_source import MediaPipe
 
 WRIST = JOINT_NAMES.index("l_wrist")

@@ -49,8 +49,7 @@ from common.bus.messages import (
 )
 from common.raster.silhouette_report import pack, unpack
 from common.rig.camera import paper_rig
-from common.rig.picture_shift import Shift
-from common.rig.upright import Upright
+from common.rig.upright import Shift, Upright
 
 BDP = thesis_bdp(1.75)
 MEASURE = Measure(

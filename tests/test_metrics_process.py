@@ -25,9 +25,8 @@ from common.bus.control_messages import Cameras, Pulse
 from common.bus.inbox import Alive
 from common.bus.messages import Body, Posture
 from common.bus.process import READY_S, ProcessContext
-from common.config.part_settings import PageSettings
+from common.config.part_settings import PageSettings, SettingsError
 from common.config.settings import Settings
-from common.config.settings_error import SettingsError
 from runtime.live import session
 from runtime.live.free_ports import free_settings
 from runtime.live.session import live

@@ -17,8 +17,8 @@ from calibration.gate.moved_cameras import (
 from common.bus.instant import Instant
 from common.bus.messages import ViewerNumber
 from common.rig.camera import arrays_of, project
-from common.rig.picture_shift import Shift
 from common.rig.turned_camera import angle_deg, shift_of, turned
+from common.rig.upright import Shift
 
 TURN = np.asarray(cv2.Rodrigues(np.radians([1.0, 3.0, 0.5]))[0])
 SHIFT = shift_of(TURN, arrays_of(RIG.cameras[1]).focal_px)

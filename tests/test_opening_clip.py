@@ -7,8 +7,8 @@ import pytest
 from common.body.proportions import thesis_bdp
 from common.bus.messages import Body
 from common.config import config_file
+from common.config.part_settings import SettingsError
 from common.config.settings import Settings
-from common.config.settings_error import SettingsError
 from common.video.clip_sources import ClipError
 from runtime.offline.lockstep import Decoders, measured_before, track_clip
 from runtime.offline.opening_clip import body_of

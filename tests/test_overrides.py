@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
+from common.config.part_settings import SettingsError
 from common.config.settings import Settings
-from common.config.settings_error import SettingsError
 from runtime.overrides import overridden
 from tritrack.commands.clip_commands import single, track
 

@@ -11,10 +11,11 @@ from common.config.part_settings import (
     PageSettings,
     RecognizerSettings,
     SearchSettings,
+    SettingsError,
     SilhouetteSettings,
+    within,
 )
 from common.config.settings import Settings
-from common.config.settings_error import SettingsError, within
 
 BOUNDS: list[tuple[Any, str, Any, Any, Any, Any]] = [
     (SilhouetteSettings, "empty_frames", 0, 1000, -1, 1001),

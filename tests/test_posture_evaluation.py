@@ -19,7 +19,7 @@ from lab.postures import posture_evaluation
 from lab.postures.posture_evaluation import Plan, evaluate_postures
 from lab.postures.posture_split import EACH_IN_TURN
 from lab.training.training import TrainingError
-from recognizer.learning_error import LearningError
+from recognizer.codebook import LearningError
 from recognizer.model_file import save
 from runtime.faults import code_of
 

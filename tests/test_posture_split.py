@@ -8,7 +8,7 @@ from lab.posture_models.evaluation import Recording
 from lab.postures import posture_split
 from lab.postures.posture_split import EACH_IN_TURN, Job, jobs_of, judged, sweep_of
 from lab.training.training import TrainingError
-from recognizer.learning_error import LearningError
+from recognizer.codebook import LearningError
 
 QUIET = Console(quiet=True)
 

@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from common.config.config_file import load
+from common.config.part_settings import SettingsError
 from common.config.renamed_settings import RenamedSetting, in_new_words, settings_of
-from common.config.settings_error import SettingsError
 
 OLD = """
 [camera_2]

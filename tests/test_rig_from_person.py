@@ -18,8 +18,8 @@ from common.config.part_settings import BodySettings, SilhouetteSettings
 from common.config.settings import Settings
 from common.method import METHODS, Method
 from common.rig.camera import paper_rig
-from common.rig.picture_shift import Shift
 from common.rig.rig_file import CalibrationError
+from common.rig.upright import Shift
 from common.video.clip_facts import Clip, Meta, View
 from runtime.offline import rig_from_person
 from runtime.offline.lockstep import Decoders, track_clip

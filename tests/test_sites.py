@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from common.config.settings_error import SettingsError
+from common.config.part_settings import SettingsError
 from runtime.serving.serve import SitesWatch
 from runtime.serving.sites import files_of, load_sites
 

@@ -11,7 +11,7 @@ from lab.posture_models.evaluation import Recording
 from lab.training import teaching
 from lab.training.teaching import line, teach
 from lab.training.training import Plan, TrainingError, train_postures
-from recognizer.learning_error import LearningError
+from recognizer.codebook import LearningError
 from recognizer.model_file import load
 from recognizer.postures import PER_POSTURE
 

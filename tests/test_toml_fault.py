@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from common.config.config_file import load
-from common.config.settings_error import SettingsError
+from common.config.part_settings import SettingsError
 from common.config.toml_fault import FAULTS, toml_fault
 
 MISTAKES = {

@@ -12,9 +12,8 @@ import numpy as np
 import pytest
 
 import runtime.steps.tracker
-from common.config.part_settings import CameraSettings
+from common.config.part_settings import CameraSettings, SettingsError
 from common.config.settings import Settings
-from common.config.settings_error import SettingsError
 from common.rig.rig_file import CalibrationError, load_rig
 from common.video.pictures import Image
 from runtime.offline.lockstep import Decoders, track_clip

@@ -11,7 +11,7 @@ from rich.console import Console
 from lab.posture_models.evaluation import Recording
 from lab.training import training
 from lab.training.training import Plan, train_postures
-from recognizer.learning_error import LearningError
+from recognizer.codebook import LearningError
 from recognizer.model_file import ModelError, load
 
 QUIET = Console(quiet=True)

@@ -7,8 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from common.rig.camera import arrays_of, centre, paper_rig, project
-from common.rig.picture_shift import Shift
 from common.rig.turned_camera import angle_deg, shift_of, turn_of, turned
+from common.rig.upright import Shift
 
 CAMERA = paper_rig((160, 120), (200.0, 180.0), (4.0, 4.0)).cameras[1]
 FOCAL_PX = arrays_of(CAMERA).focal_px

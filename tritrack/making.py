@@ -5,8 +5,8 @@ from pathlib import Path
 from rich.console import Console
 
 from common.atomic_file import unwritten
+from common.config.part_settings import SettingsError
 from common.config.picture_size import size_of
-from common.config.settings_error import SettingsError
 from runtime.terminal import bar
 from synth.motion.motions import LASTS_S, POSTURES
 from synth.write import ClipSet, SynthError, write_set

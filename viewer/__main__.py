@@ -13,23 +13,22 @@ from common.bus.bus_keys import VIEWERS
 from common.bus.control_messages import ClockQuestion, Command, Ended
 from common.bus.inbox import Inbox
 from common.bus.messages import Guide, Picture, ViewerNumber
-from common.bus.process import BEGIN_S, READY_S, Heart, ProcessContext, process
+from common.bus.process import BEGIN_S, READY_S, Heart, ProcessContext, process, settle
 from common.bus.rate import Pace
 from common.config.settings import Settings
 from common.method import METHODS
 from common.npz_file import Facts
-from common.settled import settle
 from common.video.clip_facts import View, shortfall
 from common.video.clip_sources import footage_of
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
 from common.video.pictures import DecoderDied, Undecodable
+from common.video.reduction import jpeg_of
 from viewer import track
 from viewer.background.background import Background
 from viewer.background.new_background import Learning
 from viewer.capture import Live, RoomClock
 from viewer.captured_frame import CapturedFrame
-from viewer.jpeg import jpeg_of
 from viewer.landmarks.landmark_sources import outside_sources
 from viewer.load_shedding import LoadShedder
 from viewer.resend_buffer import ResendBuffer

@@ -10,7 +10,6 @@ from animator.skeleton.fitted_bones import fitted
 from animator.skeleton.foot_contact import SIDES, Stance, stances
 from common.body.body import Vector
 from common.body.extremities import ALL_JOINT_NAMES
-from common.nearest_rows import nearest
 
 Floats = NDArray[np.float64]
 
@@ -92,3 +91,15 @@ def _shifts(places_m: Floats, own: list[Stance], weights: Vector) -> Floats:
         return shifts
     rows = nearest(np.arange(len(places_m)), np.flatnonzero(stands))
     return np.asarray(weights[:, None] * shifts[rows])
+
+
+def nearest(rows: NDArray[np.int64], known: NDArray[np.int64]) -> NDArray[np.int64]:
+    """For each of `rows` (n,) the nearest of `known` (k,), the earlier of two as near.
+
+    Args:
+        rows: In any order.
+        known: Increasing, at least one.
+    """
+    at = np.searchsorted(known, rows)
+    before, after = known[(at - 1).clip(min=0)], known[at.clip(max=len(known) - 1)]
+    return np.asarray(np.where(np.abs(rows - before) <= np.abs(after - rows), before, after))

@@ -9,8 +9,8 @@ from common.body.body import Vector
 from common.bus.instant import Instant
 from common.bus.messages import Report, ViewerNumber
 from common.rig.camera import Camera, Rig, arrays_of
-from common.rig.picture_shift import Shift
 from common.rig.turned_camera import turn_of, turned
+from common.rig.upright import Shift
 
 AS_IT_WAS: Final = Shift(0.0, 0.0, 0.0)
 OTHERWISE_PX: Final = 1.0

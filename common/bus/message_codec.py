@@ -27,8 +27,7 @@ from common.bus.messages import (
 )
 from common.notes.notes import ORIENTATIONS
 from common.rig.camera import Camera, Rig
-from common.rig.picture_shift import Shift
-from common.rig.upright import Upright
+from common.rig.upright import Shift, Upright
 
 MAX_BYTES: Final = 1_000_000
 """No message of ours is larger (a 1920x1080 silhouette has 259 kB)."""

@@ -5,8 +5,7 @@ from typing import Annotated, Final, Literal
 import msgspec
 
 from common.body.body import Bdp
-from common.rig.picture_shift import Shift
-from common.rig.upright import Upright
+from common.rig.upright import Shift, Upright
 
 PROTOCOL: Final = 11
 

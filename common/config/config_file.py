@@ -7,10 +7,9 @@ from typing import Final
 import msgspec
 
 from common.config.explained import explained
-from common.config.part_settings import CameraSettings
+from common.config.part_settings import CameraSettings, SettingsError
 from common.config.renamed_settings import settings_of, warn_of_renamed
 from common.config.settings import LANDMARK_SOURCES, NETWORK, Settings
-from common.config.settings_error import SettingsError
 
 MOST_BYTES: Final = 1 << 20
 """No settings are longer: what is, is a video, which is not read into memory."""

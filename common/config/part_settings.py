@@ -5,7 +5,6 @@ from typing import Final
 
 import msgspec
 
-from common.config.settings_error import SettingsError, within
 from common.endpoint import is_endpoint, is_exposed, is_host
 
 MOST_SESSION: Final = 64
@@ -15,6 +14,20 @@ PAPER_HZ: Final = 15.0
 """Frames a second that settings in frames spoke of (P1)."""
 AUTO: Final = "auto"
 """An endpoint that is left open."""
+
+
+class SettingsError(ValueError):
+    """Settings that no run could mean: the text names the file, the place and the cure."""
+
+
+def within(name: str, value: float, low: float, high: float) -> None:
+    """Refuse a number out of bounds.
+
+    Raises:
+        ValueError: It names what was got.
+    """
+    if not low <= value <= high:
+        raise ValueError(f"{name} must be from {low} to {high}, got {value}")
 
 
 class CameraSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

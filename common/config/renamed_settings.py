@@ -7,9 +7,8 @@ from typing import Any, Final
 import msgspec
 
 from common.config.explained import explained
-from common.config.part_settings import CameraSettings
+from common.config.part_settings import CameraSettings, SettingsError
 from common.config.settings import Settings
-from common.config.settings_error import SettingsError
 
 CAMERAS: Final = {"camera_1": "cam1", "camera_2": "cam2"}
 """What 0.2 called its two cameras, and their names in `cameras`."""

@@ -13,9 +13,9 @@ from common.config.part_settings import (
     RecognizerSettings,
     SearchSettings,
     SilhouetteSettings,
+    within,
 )
 from common.config.picture_size import size_of
-from common.config.settings_error import within
 from common.endpoint import address_of
 from common.method import Mode
 

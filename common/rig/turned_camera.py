@@ -8,7 +8,7 @@ import numpy as np
 
 from common.body.body import Vector
 from common.rig.camera import Camera, as_matrix, as_row
-from common.rig.picture_shift import Shift
+from common.rig.upright import Shift
 
 
 def turn_of(shift: Shift, focal_px: Vector) -> Vector:

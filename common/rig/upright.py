@@ -1,4 +1,4 @@
-"""How the picture that is worked on comes from that of the file: upright, with square pixels."""
+"""How the picture that is worked on lies: upright, with square pixels, shifted."""
 
 import msgspec
 
@@ -22,6 +22,16 @@ class Upright(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     def size(self) -> Size:
         """Of the picture that is worked on."""
         return swapped((self.square_width, self.square_height), self.quarters)
+
+
+class Shift(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """How a picture lies against what the same camera showed at the start of the run."""
+
+    right_px: float
+    """How far to the right what was in its middle is now."""
+    down_px: float
+    roll_deg: float
+    """By how much it has turned about its middle, clockwise."""
 
 
 Uprights = tuple[Upright | None, ...]

@@ -1,11 +1,15 @@
-"""Pictures at the size that is worked on."""
+"""Pictures made smaller: at the size that is worked on, and as JPEG."""
 
 from collections.abc import Sequence
+from typing import Final
 
 import cv2
 import numpy as np
 
 from common.video.pictures import Image
+
+JPEG_QUALITY: Final = 70
+"""Of 100, as OpenCV counts it: a page shows several pictures a second."""
 
 
 def reduced(picture: Image, size: Sequence[int], quarters: int) -> Image:
@@ -18,3 +22,9 @@ def reduced(picture: Image, size: Sequence[int], quarters: int) -> Image:
     if (picture.shape[1], picture.shape[0]) != lying:
         picture = cv2.resize(picture, lying, interpolation=cv2.INTER_AREA)
     return np.ascontiguousarray(np.rot90(picture, -quarters)) if quarters else picture
+
+
+def jpeg_of(picture: Image) -> bytes:
+    """A picture as JPEG, for the page and for reports."""
+    _, encoded = cv2.imencode(".jpg", picture, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
+    return bytes(encoded.tobytes())

@@ -6,7 +6,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from common.body.trunk_lean import lean_deg
+from common.body.body import lean_deg
 from integrator.landmarks.landmark_rays import Rays
 from integrator.proposal import pose_network
 

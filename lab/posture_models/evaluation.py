@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lab.posture_models.learning import Sizes, train
+from recognizer.codebook import LearningError
 from recognizer.features import Rows, with_pose
-from recognizer.learning_error import LearningError
 from recognizer.postures import (
     POSTURES,
     PostureModel,

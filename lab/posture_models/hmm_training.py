@@ -8,8 +8,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from recognizer.codebook import Codebook, Symbols
-from recognizer.learning_error import LearningError
+from recognizer.codebook import Codebook, LearningError, Symbols
 from recognizer.postures import STATES, Array, Topology
 
 NEIGHBOUR_WIDTH: Final = 0.25

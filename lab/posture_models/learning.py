@@ -6,10 +6,9 @@ from typing import NamedTuple
 import numpy as np
 
 from lab.posture_models.hmm_training import nearness, start, train_densities, train_symbols
-from recognizer.codebook import SYMBOLS, Codebook, fit, symbols
+from recognizer.codebook import SYMBOLS, Codebook, LearningError, fit, symbols
 from recognizer.features import Rows, bearings, features, with_pose
 from recognizer.filler import fit_of, standing
-from recognizer.learning_error import LearningError
 from recognizer.postures import (
     STATES,
     Card,

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from typing import Final, NamedTuple
 
 from lab.posture_models.learning import extended
+from recognizer.codebook import LearningError
 from recognizer.features import Rows, with_pose
-from recognizer.learning_error import LearningError
 from recognizer.postures import STATES, PostureModel, scored
 
 LEAST_TAKES: Final = 3

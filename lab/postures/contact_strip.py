@@ -13,12 +13,12 @@ from common.config import config_file
 from common.method import Mode
 from common.rig.camera import Rig
 from common.video.clip_facts import both_cameras
+from common.video.reduction import jpeg_of
 from recognizer.__main__ import MOVING
 from runtime.offline.lockstep import Decoders, track_clip
 from runtime.offline.performance import Watch
 from runtime.overrides import overridden
 from viewer.captured_frame import CapturedFrame
-from viewer.jpeg import jpeg_of
 
 SHOWN: Final = 8
 """Frames of a strip: a motion of two or three seconds is told by so many."""

@@ -17,8 +17,8 @@ from lab.training.teaching import kept, model_to_teach
 from lab.training.training import Plan, TrainingError
 from recognizer import model_rate
 from recognizer.__main__ import MOVING
+from recognizer.codebook import LearningError
 from recognizer.features import Rows, rows
-from recognizer.learning_error import LearningError
 from recognizer.postures import PostureModel
 from runtime.live.launch import Heard
 from runtime.live.session import live

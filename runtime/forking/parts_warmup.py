@@ -6,9 +6,9 @@ from typing import Final
 import cv2
 import numpy as np
 
+from common.bus.process import settle
 from common.config.settings import Settings
 from common.method import METHODS
-from common.settled import settle
 from integrator.integrator_warmup import warm_up as warm_integrator
 from recognizer import __main__ as recognizer_process
 from viewer import track

@@ -15,9 +15,8 @@ from typing import Any, Final, NamedTuple
 from rich.console import Console
 
 from common.bus.messages import Body, Posture
-from common.bus.process import ProcessContext, logged, start_log
+from common.bus.process import ProcessContext, logged, settle, start_log
 from common.config.settings import Settings
-from common.settled import settle
 from common.video.clip_facts import Clip
 from runtime.forking.zygote import Zygote
 from runtime.live.admission import admitted, opened

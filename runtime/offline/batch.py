@@ -9,8 +9,8 @@ from rich.console import Console
 
 from common.bus.messages import Body, Report, ScaleSource, ViewerNumber
 from common.config import config_file
+from common.config.part_settings import SettingsError
 from common.config.settings import Settings
-from common.config.settings_error import SettingsError
 from common.method import Mode
 from common.video.clip_facts import Clip, both_cameras
 from common.video.clip_sources import ClipError, footage_of, refuse_no_footage

@@ -8,8 +8,8 @@ import msgspec
 from common.body.body import Bdp
 from common.bus.messages import Body
 from common.config import config_file
+from common.config.part_settings import SettingsError
 from common.config.settings import Settings
-from common.config.settings_error import SettingsError
 from common.video.clip_sources import ClipError
 
 

@@ -12,7 +12,7 @@ from typing import Final
 from rich.console import Console
 from rich.live import Live as LiveDisplay
 
-from common.config.settings_error import SettingsError
+from common.config.part_settings import SettingsError
 from runtime.forking.zygote import Zygote
 from runtime.live.free_ports import refuse_held_metrics, refuse_held_ports, with_free_endpoint
 from runtime.live.process_table import inherited

@@ -11,9 +11,9 @@ import msgspec
 
 from common.config.config_file import full_path, load, with_full_paths
 from common.config.explained import explained
+from common.config.part_settings import SettingsError
 from common.config.renamed_settings import in_new_words, warn_of_renamed
 from common.config.settings import Settings
-from common.config.settings_error import SettingsError
 from common.endpoint import address_of
 from runtime.live.free_ports import ports
 

@@ -6,7 +6,7 @@ Imported by the zygote of a service alone (`runtime/forking/zygote.py`).
 from contextlib import suppress
 from typing import Final
 
-from common.settled import settle
+from common.bus.process import settle
 from runtime.forking import warmed
 from runtime.offline import lockstep
 from runtime.serving import site_process

@@ -7,8 +7,8 @@ from typing import NamedTuple
 import msgspec
 
 from common.bus.messages import ViewerNumber
+from common.config.part_settings import SettingsError
 from common.config.picture_size import working_size
-from common.config.settings_error import SettingsError
 from common.rig.absurd_rig import refuse_absurd
 from common.rig.camera import Rig
 from common.rig.rig_file import CalibrationError, check_rig, fitted, load_rig

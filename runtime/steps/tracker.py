@@ -8,10 +8,9 @@ import msgspec
 import numpy as np
 
 from common.bus.messages import Body, Guide, Posture, ViewerNumber
-from common.config.part_settings import BodySettings
+from common.config.part_settings import BodySettings, SettingsError
 from common.config.picture_size import size_of
 from common.config.settings import Settings
-from common.config.settings_error import SettingsError
 from common.method import METHODS, Mode
 from common.rig.camera import Rig
 from common.video.clip_facts import Clip, both_cameras, uprights_of

@@ -8,8 +8,8 @@ from typing import Any, Final, NamedTuple
 
 from rich.console import Console
 
+from common.config.part_settings import SettingsError
 from common.config.settings import Settings
-from common.config.settings_error import SettingsError
 from common.video.clip_sources import ClipError, footage_of
 from common.video.pictures import DecoderDied, Undecodable
 from runtime.store import journal

@@ -7,9 +7,8 @@ import msgspec
 import typer
 
 from common.config import config_file
-from common.config.part_settings import BusSettings
+from common.config.part_settings import BusSettings, SettingsError
 from common.config.settings import Settings
-from common.config.settings_error import SettingsError
 from runtime.overrides import overridden
 from runtime.terminal import counted
 from tritrack.commands.command_output import JsonWanted, console, tell

@@ -191,7 +191,7 @@ def _extra(use: str, package: str, extra: str) -> Finding:
 
 
 def _mediapipe() -> Finding:
-    from common.config.settings_error import SettingsError
+    from common.config.part_settings import SettingsError
     from common.video.clip_facts import View
     from viewer.landmarks.mediapipe_source import INSTALL, MediaPipe
 

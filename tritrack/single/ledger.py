@@ -105,7 +105,9 @@ def open_inputs(take: Take) -> Count:
     )
 
 
-def inputs(values: Sequence[str | float] | NDArray[np.str_ | np.float64], wanted: NDArray[np.bool_]) -> int:
+def inputs(
+    values: Sequence[str | float] | NDArray[np.str_ | np.float64], wanted: NDArray[np.bool_]
+) -> int:
     """How many sticky inputs say `values` in the frames where that is wanted.
 
     An input holds on while the values agree with it; frames of no value ("" or 0) agree with

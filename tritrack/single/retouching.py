@@ -15,11 +15,10 @@ from animator.retouching.fitting import FitError
 from animator.take import Take, take_of
 from common.bus.process import ProcessContext, process
 from common.config.explained import explained
-from common.config.part_settings import CameraSettings
+from common.config.part_settings import CameraSettings, SettingsError
 from common.config.picture_size import working_size
 from common.config.renamed_settings import settings_of
 from common.config.settings import Settings
-from common.config.settings_error import SettingsError
 from common.notes.notes import Notes
 from common.notes.notes_file import NotesError, load_notes, notes_path, save_notes
 from common.npz_file import Facts

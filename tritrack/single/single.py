@@ -10,9 +10,8 @@ from rich.console import Console
 
 from animator.take import take_of
 from common.config.config_file import load
-from common.config.part_settings import CameraSettings
+from common.config.part_settings import CameraSettings, SettingsError
 from common.config.settings import Settings
-from common.config.settings_error import SettingsError
 from common.method import METHODS
 from common.notes.notes import Notes
 from common.notes.notes_file import NotesError, load_notes, notes_path

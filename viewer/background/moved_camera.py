@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import Vector
-from common.rig.picture_shift import Shift
 from common.rig.turned_camera import shift_of
+from common.rig.upright import Shift
 from common.video.pictures import Image
 from viewer.background.background import Background
 from viewer.background.turned_picture import Lens, rays_of, seen_at, turn_between

@@ -6,8 +6,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from common.body.body import JOINT_NAMES
-from common.body.trunk_lean import lean_deg
+from common.body.body import JOINT_NAMES, lean_deg
 from viewer.landmarks.keypoint_layouts import POINT
 
 Floats = NDArray[np.float64]

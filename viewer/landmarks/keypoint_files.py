@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.bus.messages import Landmarks
-from common.config.settings_error import SettingsError
+from common.config.part_settings import SettingsError
 from common.rig.upright_camera import as_worked_on
 from common.video.clip_facts import View
 from common.video.pictures import Decoded, Size

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import OTHER_SIDE
-from common.config.settings_error import SettingsError
+from common.config.part_settings import SettingsError
 from viewer.landmarks.landmark_window import PLANES, SIDE, Planes
 
 if TYPE_CHECKING:

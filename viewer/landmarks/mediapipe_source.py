@@ -11,8 +11,8 @@ import numpy as np
 
 from common.bus.messages import Landmarks
 from common.child.child_process import Broken, Child
+from common.config.part_settings import SettingsError
 from common.config.picture_size import working_size
-from common.config.settings_error import SettingsError
 from common.video.clip_facts import View
 from common.video.pictures import Decoded, Image, Size
 from viewer.landmarks.mediapipe_joints import landmarks_of

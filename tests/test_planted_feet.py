@@ -1,15 +1,15 @@
-"""The nearest row of some."""
+"""Feet that stand still while they carry: the nearest frame of which something is known."""
 
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from common.nearest_rows import nearest
+from animator.skeleton.planted_feet import nearest
 
-ROWS = st.sets(st.integers(0, 60), min_size=1)
+FRAMES = st.integers(0, 60)
 
 
-@given(rows=st.lists(st.integers(0, 60), max_size=20), known=ROWS)
+@given(rows=st.lists(FRAMES, max_size=20), known=st.sets(FRAMES, min_size=1))
 def test_no_other_is_nearer_and_none_as_near_is_earlier(rows: list[int], known: set[int]) -> None:
     found = nearest(np.array(rows, np.int64), np.array(sorted(known)))
     due = [min(known, key=lambda one: (abs(one - row), one)) for row in rows]

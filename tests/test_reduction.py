@@ -1,9 +1,9 @@
-"""Small pictures for the page."""
+"""Pictures made smaller: as JPEG, for the page."""
 
 import cv2
 import numpy as np
 
-from viewer.jpeg import jpeg_of
+from common.video.reduction import jpeg_of
 
 
 def test_a_picture_comes_back_as_it_was_within_jpegs_loss() -> None:
