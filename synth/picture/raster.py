@@ -87,6 +87,13 @@ def shade(
 
 
 @compiled
+def _between(one: float, two: float, three: float, count: int) -> tuple[int, int]:
+    """First and last of `count` rows or columns whose centres lie between three places, pixels."""
+    first = max(0, math.ceil(min(one, two, three) - 0.5))
+    return first, min(count - 1, math.floor(max(one, two, three) - 0.5))
+
+
+@compiled
 def cover(pixels: Floats, faces: NDArray[np.int64], mask: NDArray[np.uint8]) -> None:
     """Set every pixel of `mask` (h, w) whose centre lies in a face; pixels (v, 2)."""
     height, width = mask.shape
@@ -98,10 +105,8 @@ def cover(pixels: Floats, faces: NDArray[np.int64], mask: NDArray[np.uint8]) -> 
         if area == 0.0 or not math.isfinite(area):
             continue
         sign = 1.0 if area > 0.0 else -1.0
-        top = max(0, math.ceil(min(y0, y1, y2) - 0.5))
-        bottom = min(height - 1, math.floor(max(y0, y1, y2) - 0.5))
-        left = max(0, math.ceil(min(x0, x1, x2) - 0.5))
-        right = min(width - 1, math.floor(max(x0, x1, x2) - 0.5))
+        top, bottom = _between(y0, y1, y2, height)
+        left, right = _between(x0, x1, x2, width)
         for row in range(top, bottom + 1):
             y = row + 0.5
             for column in range(left, right + 1):
@@ -149,10 +154,8 @@ def draw(
         area = (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0)
         if not area < 0.0:
             continue
-        top = max(0, math.ceil(min(y0, y1, y2) - 0.5))
-        bottom = min(height - 1, math.floor(max(y0, y1, y2) - 0.5))
-        left = max(0, math.ceil(min(x0, x1, x2) - 0.5))
-        right = min(width - 1, math.floor(max(x0, x1, x2) - 0.5))
+        top, bottom = _between(y0, y1, y2, height)
+        left, right = _between(x0, x1, x2, width)
         material, scale = materials[f], 1.0 / area
         near_a, near_b, near_c = 1.0 / depths[a], 1.0 / depths[b], 1.0 / depths[c]
         p_x, p_y = (y1 - y2) * scale, (x2 - x1) * scale
@@ -172,13 +175,20 @@ def draw(
                 u = p * rest[a, 0] + q * rest[b, 0] + r * rest[c, 0]
                 v = p * rest[a, 1] + q * rest[b, 1] + r * rest[c, 1]
                 w = p * rest[a, 2] + q * rest[b, 2] + r * rest[c, 2]
-                colour = material
-                if material == pattern[2] and _second(pattern[0], pattern[1], u, v, w):
-                    colour = len(palette) - 1
-                thread = math.floor(u * THREADS) ^ math.floor((v + w) * THREADS)
-                weave = 0.98 + 0.04 * (thread & 1)
+                second, weave = _woven(material, pattern, u, v, w)
+                colour = len(palette) - 1 if second else material
                 for k in range(3):
                     colours[row, column, k] = palette[colour, k] * bright * weave
+
+
+@compiled
+def _woven(
+    material: int, pattern: tuple[float, float, float], x: float, y: float, z: float
+) -> tuple[bool, float]:
+    """Whether cloth has its second colour at a point at rest, and how bright a thread is there."""
+    second = material == pattern[2] and _second(pattern[0], pattern[1], x, y, z)
+    thread = math.floor(x * THREADS) ^ math.floor((y + z) * THREADS)
+    return second, 0.98 + 0.04 * (thread & 1)
 
 
 @compiled

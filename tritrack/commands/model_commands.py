@@ -1,7 +1,7 @@
 """The commands for models and figures: learn, and measure what is tracked and recognised."""
 
 from pathlib import Path
-from typing import Annotated, Final, Literal
+from typing import TYPE_CHECKING, Annotated, Final, Literal
 
 import typer
 
@@ -23,6 +23,9 @@ from tritrack.commands.options import (
     writable_file,
 )
 from tritrack.extras import refuse_without
+
+if TYPE_CHECKING:
+    from lab.training.training import Plan
 
 LEARN: Final = ("learn", "sklearn")
 """The extra of what learns models, and what it brings."""
@@ -79,9 +82,16 @@ def train(
     if not runs:
         raise typer.BadParameter("name clips or run folders to learn postures from")
     refuse_without(*LEARN)
-    from lab.training.training import Plan, train_postures
+    from lab.training.training import Plan
 
-    facts = train_postures(runs, out, Plan(mode, recognizer, cache), console)
+    _train_postures(runs, out, Plan(mode, recognizer, cache), json_wanted)
+
+
+def _train_postures(runs: list[Path], out: Path, plan: "Plan", json_wanted: bool) -> None:
+    """Learn postures, and report how many."""
+    from lab.training.training import train_postures
+
+    facts = train_postures(runs, out, plan, console)
     line = (
         f"{counted(len(facts['sequences']), 'posture')} learnt, {len(facts['knows'])} known; "
         f"written to {out}"

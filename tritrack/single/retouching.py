@@ -1,9 +1,10 @@
 """The retouching of a run: its video, its poses and its notes on a page, until Ctrl-C."""
 
 import shlex
+import threading
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import cv2
 import msgspec
@@ -34,6 +35,9 @@ from tritrack.single.ledger import facts_of, ledger
 from tritrack.single.mask_file import is_mask_file
 from tritrack.single.refitting import refit
 
+if TYPE_CHECKING:
+    from animator.retouching.retouch import RetouchPage
+
 MOST_PICTURES: Final = 20_000
 """They are kept in memory, some 40 kB each."""
 SHOWN: Final = (640, 480)
@@ -43,6 +47,18 @@ JPEG_QUALITY: Final = 88
 
 class RetouchError(RuntimeError):
     """A run that cannot be retouched: the text says why and what to do."""
+
+
+class Opened(NamedTuple):
+    """A run that is retouched, with what it was made of."""
+
+    run: PastRun
+    settings: Settings
+    """The run's own, with the video where it is now."""
+    clip: Clip
+    """Its video, through camera 1."""
+    source: Path
+    notes_path: Path
 
 
 def retouch(
@@ -64,18 +80,9 @@ def retouch(
         PastRunError, RetouchError, ClipError, DecoderDied, NotesError, PageError: When something
             cannot be worked with.
     """
-    try:
-        from animator.retouching.retouch import RetouchPage
-    except ModuleNotFoundError as error:
-        raise RetouchError(
-            f"there is no page without {error.name}: pip install 'tritrack[page]'"
-        ) from error
-
-    run = open_run(folder)
-    settings = _settings_of(run, video)
-    clip = _clip_of(run, settings)
-    source = Path(str(clip.views[0].source))
-    path = notes_file or notes_path(source)
+    make_page = _page_or_refuse()
+    opened = _opened(folder, video, notes_file)
+    run, clip, source, path = opened.run, opened.clip, opened.source, opened.notes_path
     notes = load_notes(path) if path.exists() else Notes(source.name)
     take = _take_of(run, clip)
     pictures = _pictures(clip, take, console)
@@ -84,22 +91,14 @@ def retouch(
         return _decoded(pictures[row])
 
     def keep(new: Notes) -> tuple[str, bool]:
-        try:
-            save_notes(path, new)
-        except NotesError as error:
-            return str(error), False
-        count = ledger(page.take, new).given.total
-        return f"{count} input{'' if count == 1 else 's'}, kept in {path.name}", True
+        return _kept(path, page.take, new)
 
     with process("retouch", ProcessContext()) as stop:
 
-        def fit(said: Notes, tell: Callable[[str], object]) -> Take:
-            if not fitted_by_single(run):
-                raise FitError(how_to_go_on(source, run))
-            refit(folder, settings, said, tell, stop)
-            return _take_of(open_run(folder), clip)
+        def fit(notes: Notes, report: Callable[[str], object]) -> Take:
+            return _fitted(opened, notes, report, stop)
 
-        page = RetouchPage(take, clip.views[0].source_size, picture_of, notes, keep, fit, port)
+        page = make_page(take, clip.views[0].source_size, picture_of, notes, keep, fit, port)
         console.print(f"the page is at {page.address}; Ctrl-C ends it", highlight=False)
         try:
             stop.wait()
@@ -108,6 +107,46 @@ def retouch(
     if page.notes != page.fitted:
         say(console, how_to_go_on(source, run))
     return {"notes": str(path), **facts_of(ledger(page.take, page.notes))}
+
+
+def _page_or_refuse() -> type["RetouchPage"]:
+    """The page's class, of which the library is an extra."""
+    try:
+        from animator.retouching.retouch import RetouchPage
+    except ModuleNotFoundError as error:
+        raise RetouchError(
+            f"there is no page without {error.name}: pip install 'tritrack[page]'"
+        ) from error
+    return RetouchPage
+
+
+def _opened(folder: Path, video: Path | None, notes_file: Path | None) -> Opened:
+    run = open_run(folder)
+    settings = _settings_of(run, video)
+    clip = _clip_of(run, settings)
+    source = Path(str(clip.views[0].source))
+    return Opened(run, settings, clip, source, notes_file or notes_path(source))
+
+
+def _kept(path: Path, take: Take, notes: Notes) -> tuple[str, bool]:
+    """Write notes: what the page says of that, and whether they are written."""
+    try:
+        save_notes(path, notes)
+    except NotesError as error:
+        return str(error), False
+    count = ledger(take, notes).given.total
+    return f"{count} input{'' if count == 1 else 's'}, kept in {path.name}", True
+
+
+def _fitted(
+    opened: Opened, notes: Notes, report: Callable[[str], object], stop: threading.Event
+) -> Take:
+    """The run fitted anew by notes, as the page shows it."""
+    run = opened.run
+    if not fitted_by_single(run):
+        raise FitError(how_to_go_on(opened.source, run))
+    refit(run.folder, opened.settings, notes, report, stop)
+    return _take_of(open_run(run.folder), opened.clip)
 
 
 def fitted_by_single(run: PastRun) -> bool:
