@@ -13,7 +13,7 @@ from rich.console import Console
 from integrator.proposal import lifting_network
 from integrator.proposal.landmark_look import INPUTS, Look
 from integrator.proposal.network_weights import LiftingNetwork, load, shipped_lifting
-from lab.training import lifting_training, torch_network
+from lab.training import lifting_training, network_training, torch_network
 from lab.training.lifting_examples import LiftingExample, lifting_examples
 from lab.training.lifting_training import learnt, train_lifting
 from lab.training.torch_network import Round
@@ -92,7 +92,7 @@ def drawing(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     taught: list[Any] = []
     asked = pool_here(monkeypatch)
     made = {20: [shown_by(7), shown_by(8)], 21: [], 22: [shown_by(9)]}
-    monkeypatch.setattr(lifting_training, "torch_or_refuse", lambda: None)
+    monkeypatch.setattr(network_training, "torch_or_refuse", lambda: None)
     monkeypatch.setattr(lifting_training, "PERFORMANCES", 3)
     monkeypatch.setattr(lifting_training, "lifting_examples", made.__getitem__)
 

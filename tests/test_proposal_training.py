@@ -14,7 +14,12 @@ from rich.console import Console
 from integrator.proposal import network_weights, pose_network
 from integrator.proposal.network_weights import to_bfloat16
 from integrator.proposal.silhouette_window import BESIDE, Look
-from lab.training import proposal_examples, proposal_training, torch_network
+from lab.training import (
+    network_training,
+    proposal_examples,
+    proposal_training,
+    torch_network,
+)
 from lab.training.proposal_examples import Example, example, example_of
 from lab.training.proposal_training import learnt, train_proposals
 from lab.training.torch_network import Round
@@ -155,7 +160,7 @@ def drawing(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     """Performances of 7, 8 and 9 instants instead of drawn ones; notes what was taught."""
     taught: list[Any] = []
     asked = pool_here(monkeypatch)
-    monkeypatch.setattr(proposal_training, "torch_or_refuse", lambda: None)
+    monkeypatch.setattr(network_training, "torch_or_refuse", lambda: None)
     monkeypatch.setattr(proposal_training, "PERFORMANCES", {ORDINARY: 2, AT_LARGE: 1})
     monkeypatch.setattr(proposal_training, "example_of", lambda given: shown_by(0, given[0] - 13))
 
