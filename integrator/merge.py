@@ -2,14 +2,12 @@
 
 from typing import NamedTuple
 
-import msgspec
-
 from calibration.gate import moved_cameras, rig_agreement, silhouette_motion
 from common.body.body import ANGLE_NAMES, ANGLES_IN_POSE, Vector
 from common.body.kinematics import ALL_LIMBS
 from common.body.proportions import body_vector
 from common.body.stick_body import ADULT, THESIS
-from common.bus.instant import Instant, Seen, two_views
+from common.bus.instant import Instant, Seen
 from common.bus.messages import Body, Guide, Report
 from common.raster.bits import count
 from common.raster.kernel import match, view_of
@@ -23,6 +21,7 @@ from integrator.merge_state import Posed, State
 from integrator.paper import fused_pose
 from integrator.pose import joint_limits, smoothing
 from integrator.rig.assumed_rig import assumed_rig
+from integrator.rig.best_pair import Places, Two, best_pair, two_of
 from integrator.rig.body_position import facing_of
 from integrator.rig.tilted_camera import assumed_rig_of_one
 from integrator.rig.undistortion import undistorted_instant, undistorted_rig
@@ -37,9 +36,16 @@ class Sighting(NamedTuple):
     """Cameras without distortion."""
     seen: Seen
     """One of them at least is there."""
+    pair: Places
+    """The two views that show the person best."""
     dt_s: float
     """Time since the instant before; 0 where nobody was there."""
     annotations: Annotations
+
+    @property
+    def two(self) -> Two:
+        """What is given to what takes two views."""
+        return two_of(self.rig, self.seen, self.pair)
 
 
 def step(
@@ -66,8 +72,10 @@ def step(
     if not any(seen) or state.rig is None:
         state = _without_pose(state)
         return (state, *outgoing.no_detection(state, instant))
-    now = Sighting(undistorted_rig(state.rig), seen, dt_s, annotations)
-    state = _with_agreement(state, now)
+    rig = undistorted_rig(state.rig)
+    state = _with_pair(state, best_pair(state.pair, rig, seen))
+    now = Sighting(rig, seen, state.pair or (0, 0), dt_s, annotations)
+    state = state._replace(agreement=rig_agreement.step(state.agreement, *now.two))
     state, settled_at = _with_opening(state, now)
     state, now = _with_pose(state, now, settled_at)
     state = _with_shape(state, now)
@@ -128,28 +136,26 @@ def _with_rig(state: State, seen: Seen) -> State:
     return state._replace(rig=rig, stands=moved_cameras.told_by(state.stands, None, rig))
 
 
-def _with_agreement(state: State, now: Sighting) -> State:
-    """The state with what cameras 1 and 2 show of whether the rig is right."""
-    if len(now.seen) < 2:
-        return state
-    rig = now.rig
-    if len(now.seen) > 2:
-        rig = msgspec.structs.replace(rig, cameras=rig.cameras[:2])
-    agreement = rig_agreement.step(state.agreement, rig, two_views(now.seen))
-    return state._replace(agreement=agreement)
+def _with_pair(state: State, pair: Places) -> State:
+    """The state with the pair of an instant: what networks remember, and the views' agreement, is
+    of the pair before."""
+    if state.pair in (None, pair):
+        return state._replace(pair=pair)
+    found = None if state.found is None else state.found._replace(memory=None)
+    return state._replace(pair=pair, found=found, agreement=rig_agreement.State())
 
 
 def _with_opening(state: State, now: Sighting) -> tuple[State, Vector | None]:
     """The state with what is known of the body; the navel's place if that is now measured (4.2)."""
     due = state.settings.body.opening_frames
-    opening, settled_at = opening_posture.step(state.opening, now.rig, now.seen, due, state.method)
+    opening, settled_at = opening_posture.step(state.opening, *now.two, due, state.method)
     return state._replace(opening=opening), settled_at
 
 
 def _with_pose(state: State, now: Sighting, settled_at: Vector | None) -> tuple[State, Sighting]:
     """The state with the pose of an instant, and the instant without clutter: of one view,
     proposed, or searched for by the viewers (4.3, 4.4)."""
-    if state.method.stick_lifting or (state.proposes and _is_alone(now.seen)):
+    if state.method.stick_lifting or (state.proposes and None in now.two.seen):
         found = _lone(state, now)
     elif state.proposes:
         both = _proposed(state, now)
@@ -164,24 +170,22 @@ def _with_pose(state: State, now: Sighting, settled_at: Vector | None) -> tuple[
         state = state._replace(opening=state.opening._replace(bdp=both.bdp))
         now = now._replace(seen=both.seen)
     else:
-        found = fused_pose.step(state, now.rig, two_views(now.seen), settled_at)
+        found = fused_pose.step(state, *now.two, settled_at)
     return state._replace(found=found, facing=found.facing), now
-
-
-def _is_alone(seen: Seen) -> bool:
-    """Whether one view alone shows the person."""
-    return sum(report is not None for report in seen) == 1
 
 
 def _lone(state: State, now: Sighting) -> Posed:
     """The pose that one view shows: the other is gone, sees nobody, or there is none."""
-    rig, bdp, before = state.rig, state.opening.bdp, state.found
-    report = next(report for report in now.seen if report is not None)
+    bdp, before = state.opening.bdp, state.found
     assert bdp is not None
-    assert rig is not None
+    assert state.rig is not None
+    rig, seen = two_of(state.rig, now.seen, now.pair)
+    place = 0 if seen[0] is not None else 1
+    report = seen[place]
+    assert report is not None
     method, dt_s, annotations = state.method, now.dt_s, now.annotations
     man = THESIS if method.stick_lifting else ADULT
-    sight = Sight(method, report.viewer, rig, report, man, bdp, state.pose, dt_s, annotations)
+    sight = Sight(method, place, rig, report, man, bdp, state.pose, dt_s, annotations)
     alone = before.alone if before is not None else None
     if alone is None or alone.number != report.viewer:
         alone = single_view.begun(sight, None if before is None else before.joints_m, alone)
@@ -189,7 +193,7 @@ def _lone(state: State, now: Sighting) -> Posed:
     body = found.body
     return Posed(
         body.pose,
-        facing_of(rig, body.pose),
+        facing_of(state.rig, body.pose),
         body.joints_m,
         body.confidence,
         found.memory,
@@ -205,7 +209,9 @@ def _proposed(state: State, now: Sighting) -> ProposedPose:
     if known is not None:
         before = proposed_pose.Before(known.memory, known.pose, known.landmarks)
     is_first = known is None and not (opening.measured or opening.samples)
-    given = proposed_pose.Sighting(opening.bdp, now.rig, now.seen, now.dt_s, state.method, is_first)
+    given = proposed_pose.Sighting(
+        opening.bdp, now.rig, now.seen, now.pair, now.dt_s, state.method, is_first
+    )
     return proposed_pose.step(before, given)
 
 
@@ -213,7 +219,7 @@ def _with_shape(state: State, now: Sighting) -> State:
     """The state with a body fitted to the silhouettes."""
     if not state.method.shape_fit or state.found is None:
         return state
-    fitted = shape_fit.step(state.opening, now.rig, now.seen, state.found.pose)
+    fitted = shape_fit.step(state.opening, *now.two, state.found.pose)
     return state._replace(opening=fitted)
 
 

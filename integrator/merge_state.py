@@ -18,6 +18,7 @@ from integrator.landmarks import landmark_fusion
 from integrator.opening_posture import Opening
 from integrator.pose import smoothing
 from integrator.proposal.pose_proposal import Memory
+from integrator.rig.best_pair import Places
 from integrator.single.single_view import Alone
 
 
@@ -65,6 +66,8 @@ class State(NamedTuple):
     """The last number that an instant had."""
     times: FrameTimes | None = None
     """When camera 1 takes its frames; None where it is no part of the run."""
+    pair: Places | None = None
+    """The two views that showed the person best; None until somebody was seen."""
     agreement: rig_agreement.State = rig_agreement.State()
     calibration: int = 0
     """How often the rig was changed: places before and after do not compare."""

@@ -49,7 +49,7 @@ def body_of(
     places_m = _places_m(state, pose)
     pixels = tuple(project(camera, places_m) for camera in rig.cameras)
     outside = _outside(instant, pixels)
-    told = state.agreement.told if _views(instant) == "both" else None
+    told = state.agreement.told if sum(map(bool, seen)) > 1 else None
     believed = _believed(state, told)
     confidence = np.where(outside, 0.0, _confidence(state, scores) * believed)
     status, posed = _status(state), {}

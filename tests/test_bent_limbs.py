@@ -17,7 +17,7 @@ from integrator.single.sight import Annotations, Sight
 
 CAMERA = RIG.cameras[0]
 SIGHT = Sight(
-    DEFAULT, 1, RIG, report(1, silhouettes(standing())[0]), ADULT, PERSON, None, 0.0, Annotations()
+    DEFAULT, 0, RIG, report(1, silhouettes(standing())[0]), ADULT, PERSON, None, 0.0, Annotations()
 )
 SHANKS = [LIMBS.index(f"{side}_lower_leg") for side in "rl"]
 KNEES, ANKLES = (

@@ -456,7 +456,8 @@ def test_scores_are_those_of_each_views_own_camera_and_silhouette() -> None:
 
     def scores(*masks: Any) -> tuple[float, ...]:
         given = [None if mask is None else report(n + 1, mask) for n, mask in enumerate(masks)]
-        return merge._scores(state, merge.Sighting(RIG, (given[0], given[1]), 0.1, Annotations()))
+        seen = merge.Sighting(RIG, (given[0], given[1]), (0, 1), 0.1, Annotations())
+        return merge._scores(state, seen)
 
     assert scores(first, second) == (1.0, 1.0)
     one, other = scores(raised, second)

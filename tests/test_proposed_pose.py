@@ -63,7 +63,7 @@ def test_what_one_view_alone_shows_goes_where_the_network_is_unsure_with_it_and_
     monkeypatch: pytest.MonkeyPatch, glared: float, clean: float, cleared: bool
 ) -> None:
     proposing(monkeypatch, glared, clean)
-    found = proposed_pose.step(Before(), Sighting(BODY, ROLLED, glaring(), 1 / 15, DEFAULT))
+    found = proposed_pose.step(Before(), Sighting(BODY, ROLLED, glaring(), (0, 1), 1 / 15, DEFAULT))
     assert (found.seen != glaring()) == cleared
     assert found.confidence == pytest.approx(clean if cleared else glared)
 
@@ -236,6 +236,6 @@ def test_joints_lie_beside_the_cylinders_where_they_are_free(
     for free in (True, False):
         method = msgspec.structs.replace(DEFAULT, free_joints=free)
         seen = (told(1, outlines(on_one_leg())[0]), told(2, outlines(on_one_leg())[1]))
-        found = proposed_pose.step(Before(), Sighting(BODY, ROLLED, seen, 1 / 15, method))
+        found = proposed_pose.step(Before(), Sighting(BODY, ROLLED, seen, (0, 1), 1 / 15, method))
         ends.append(np.allclose(found.joints_m, joints(body_vector(BODY), found.pose)))
     assert ends == [False, True]

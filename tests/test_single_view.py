@@ -20,7 +20,7 @@ from common.body.stick_body import (
     joints_px,
     standing,
 )
-from common.bus.messages import Box, Fit, Landmarks, Lifting, Report, ViewerNumber
+from common.bus.messages import Box, Fit, Landmarks, Lifting, Report
 from common.method import DEFAULT, METHODS
 from common.notes.notes import Orientation
 from common.raster.silhouette_report import pack
@@ -53,8 +53,7 @@ def sight_of(
 ) -> Sight:
     """A report, held against somebody of 1.75 m."""
     man, method = (THESIS, METHODS["thesis"]) if printed else (ADULT, DEFAULT)
-    number: ViewerNumber = 1 if n == 1 else 2
-    return Sight(method, number, RIG, report, man, thesis_bdp(1.75), None, 0.0, said)
+    return Sight(method, n - 1, RIG, report, man, thesis_bdp(1.75), None, 0.0, said)
 
 
 def report_of(man: Stickman, arm_deg: float = 270.0) -> Report:
@@ -316,7 +315,8 @@ def test_how_far_a_body_is_from_what_is_shown_is_weighed_by_how_sure_that_is() -
 
 
 def test_what_a_view_begins_with_is_nothing_or_what_was_known_before_it() -> None:
-    sight = sight_of(report_of(ADULT), printed=False, n=2)
+    report = msgspec.structs.replace(report_of(ADULT), viewer=2)
+    sight = sight_of(report, printed=False, n=2)
     fresh = single_view.begun(sight, None)
     assert fresh == single_view.Alone(
         2, 0.0, Lifting("", 1.0, ()), Front(), fresh.signs, None, stick=False

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from common.body.body import Bdp, Vector, rest_pose
 from common.body.kinematics import joints
 from common.body.proportions import body_vector, stature
-from common.bus.instant import Seen, two_views
+from common.bus.instant import Seen
 from common.method import Method
 from common.rig.camera import Rig
 from integrator.fit import visual_hull
@@ -18,6 +18,7 @@ from integrator.landmarks.landmark_rays import rays_of
 from integrator.prior_body import prior
 from integrator.proposal import pose_proposal
 from integrator.proposal.pose_proposal import Memory, PoseProposal
+from integrator.rig.best_pair import Places, Two, two_of
 
 POOR: Final = 0.6
 """Of less S in either view a pose fits badly: of r01's and r04's every twentieth is."""
@@ -33,17 +34,23 @@ class Before(NamedTuple):
 
 
 class Sighting(NamedTuple):
-    """What both views show, and what it is held against."""
+    """What the views show, and what it is held against."""
 
     bdp: Bdp
     rig: Rig
-    """Two cameras without distortion."""
+    """Cameras without distortion."""
     seen: Seen
-    """Both are there."""
+    pair: Places
+    """The two views that show the person best: both do."""
     dt_s: float
     method: Method
     is_first: bool = False
     """The body is a prior, by these silhouettes."""
+
+    @property
+    def two(self) -> Two:
+        """The views of the pair: silhouettes propose by two."""
+        return two_of(self.rig, self.seen, self.pair)
 
 
 class ProposedPose(NamedTuple):
@@ -86,9 +93,7 @@ def step(before: Before, now: Sighting) -> ProposedPose:
 
 def _proposed(before: Before, now: Sighting) -> PoseProposal:
     up = pose_proposal.up_of(now.bdp, before.pose)
-    return pose_proposal.step(
-        before.memory, now.bdp, now.rig, now.seen, now.dt_s, up, now.method.lifting
-    )
+    return pose_proposal.step(before.memory, now.bdp, *now.two, now.dt_s, up, now.method.lifting)
 
 
 def _with_landmarks(
@@ -110,12 +115,13 @@ def _without_clutter(
     """The instant without what both views do not show as one piece, if that is surer."""
     body, was = body_vector(now.bdp), rest_pose() if before.pose is None else before.pose
     pose, _ = pose_proposal.pose_and_rest(body, was, known.joints_m)
-    if poorest(pose, body, now.rig, now.seen) >= POOR:
+    if poorest(pose, body, *now.two) >= POOR:
         return now, known
-    cleaned = visual_hull.cleaned(now.rig, two_views(now.seen))
+    cleaned = visual_hull.cleaned(*now.two)
     if not cleaned.clutter:
         return now, known
-    kept = cleaned.seen
-    clean = now._replace(seen=kept, bdp=prior(now.rig, kept) if now.is_first else now.bdp)
+    of_pair = dict(zip(now.pair, cleaned.seen, strict=True))
+    clean = now._replace(seen=tuple(of_pair.get(n, own) for n, own in enumerate(now.seen)))
+    clean = clean._replace(bdp=prior(*clean.two) if now.is_first else now.bdp)
     again = _proposed(before, clean)
     return (clean, again) if again.confidence.mean() > known.confidence.mean() else (now, known)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from common.body.body import JOINT_NAMES, Bdp, Vector, rest_pose
 from common.body.proportions import body_vector, stature
 from common.body.stick_body import Stickman
-from common.bus.messages import Lifting, Report, ViewerNumber
+from common.bus.messages import Lifting, Report
 from common.method import Method
 from common.notes.notes import Orientation
 from common.rig.camera import Camera, Rig
@@ -33,9 +33,10 @@ class Sight(NamedTuple):
     """One report, and what it is held against."""
 
     method: Method
-    number: ViewerNumber
+    place: int
+    """0 or 1: of its camera in the rig."""
     rig: Rig
-    """Of the run, at the working size: its other camera tells the network its axes."""
+    """Two cameras, at the working size: the other one tells the network its axes."""
     report: Report
     """As without distortion, but its stick body, which is as the picture has it."""
     man: Stickman
@@ -49,14 +50,14 @@ class Sight(NamedTuple):
     @property
     def camera(self) -> Camera:
         """That took the picture."""
-        return self.rig.cameras[self.number - 1]
+        return self.rig.cameras[self.place]
 
     @property
     def seen(self) -> tuple[Report | None, Report | None]:
         """The report in the place of its camera; the only camera of a rig is its first, which
         proposals look at from the front."""
         first, second = self.rig.cameras
-        return (self.report, None) if self.number == 1 or first == second else (None, self.report)
+        return (self.report, None) if self.place == 0 or first == second else (None, self.report)
 
     @property
     def stature_m(self) -> float:

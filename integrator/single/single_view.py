@@ -58,13 +58,13 @@ def begun(sight: Sight, joints_m: NDArray[np.float64] | None, other: Alone | Non
     """
     nothing, signs = Lifting("", 1.0, ()), depth_signs.init()
     if joints_m is None:
-        return Alone(sight.number, 0.0, nothing, Front(), signs, None, stick=False)
+        return Alone(sight.report.viewer, 0.0, nothing, Front(), signs, None, stick=False)
     signs, front, landmarks = _witnessed(sight, signs, joints_m), None, None
     if other is not None:
         landmarks = other.landmarks
         yaw = reflection.yaw_deg(sight.camera, joints_m)
         front = None if other.front is None else reflection.as_known(other.front, yaw)
-    return Alone(sight.number, 0.0, nothing, front, signs, landmarks, stick=False)
+    return Alone(sight.report.viewer, 0.0, nothing, front, signs, landmarks, stick=False)
 
 
 def step(memory: Memory | None, alone: Alone, sight: Sight) -> Found:

@@ -1,0 +1,81 @@
+"""The two views that see a person best: what takes silhouettes of two is given these."""
+
+from itertools import combinations
+from typing import Final, NamedTuple
+
+import numpy as np
+from msgspec import structs
+
+from common.body.body import Vector
+from common.bus.instant import Seen, TwoViews
+from common.bus.messages import Report
+from common.raster.silhouette_report import centroid_px, unpack
+from common.rig.camera import Camera, Rig, ray
+
+Places = tuple[int, int]
+"""Of two cameras in the rig, the lower first."""
+
+CUT: Final = 0.5
+"""Worth of a view that the person leaves, beside one that shows all of them."""
+KEPT: Final = 1.5
+"""Worth of the pair of the instant before, beside another: what the networks remember is by it."""
+
+
+def best_pair(before: Places | None, rig: Rig, seen: Seen) -> Places:
+    """The pair of an instant.
+
+    Two views stay the pair while both see the whole person. Otherwise it is of those that see
+    the person, whole ones before others, whose sight lines are nearest to a right angle.
+
+    Args:
+        before: The pair of the instant before; None at the first.
+        rig: V cameras without distortion; the only one of a rig is both.
+        seen: Of each view, as without distortion; None where it has no person.
+    """
+    shown = [n for n, report in enumerate(seen) if report is not None]
+    whole = {n for n in shown if not _is_cut(seen[n])}
+    if len(rig.cameras) <= 2:
+        return 0, len(rig.cameras) - 1
+    if not shown or whole.issuperset(before or (-1,)):
+        return before or (0, 1)
+    if len(shown) == 1:
+        other = next(n for n in (*(before or ()), 0, 1) if n != shown[0])
+        return min(shown[0], other), max(shown[0], other)
+    lines = {n: _sight_line(seen[n], rig.cameras[n]) for n in shown}
+    worth = {
+        pair: _sine(lines[pair[0]], lines[pair[1]])
+        * CUT ** len(set(pair) - whole)
+        * (KEPT if pair == before else 1.0)
+        for pair in combinations(shown, 2)
+    }
+    return max(worth, key=lambda pair: worth[pair])
+
+
+def _is_cut(report: Report | None) -> bool:
+    return report is None or report.cut
+
+
+def _sight_line(report: Report | None, camera: Camera) -> Vector:
+    """Towards the middle of a silhouette, (3,) unit length, world."""
+    assert report is not None
+    return ray(camera, centroid_px(unpack(report)))
+
+
+def _sine(one: Vector, other: Vector) -> float:
+    return float(np.linalg.norm(np.cross(one, other)))
+
+
+class Two(NamedTuple):
+    """A pair of views, for what takes two."""
+
+    rig: Rig
+    """Two cameras; the only one of a rig twice."""
+    seen: TwoViews
+
+
+def two_of(rig: Rig, seen: Seen, pair: Places) -> Two:
+    """The views of a pair; an only camera's has nothing beside it."""
+    one, other = pair
+    cameras = tuple(rig.cameras[n] for n in pair)
+    own = rig if cameras == rig.cameras else structs.replace(rig, cameras=cameras)
+    return Two(own, (seen[one], None if one == other else seen[other]))
