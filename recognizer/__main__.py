@@ -27,7 +27,7 @@ from recognizer.postures import DensityModel, PostureModel
 SHIPPED = Path(__file__).parent / "postures.npz"
 """The model that is used when the settings name none."""
 SHIPPED_PAPER = SHIPPED.with_name("postures_paper.npz")
-"""The same in `paper` mode: the paper's recogniser, learnt from what that mode tracks."""
+"""Model file of `paper` mode: the paper's recogniser, learnt from what that mode tracks."""
 REACH_FRAMES: Final = 900
 """A performance that is longer is told from there on: a minute at the paper's rate."""
 GAP_S: Final = 1.0

@@ -14,10 +14,10 @@ from recognizer.postures import STATES, Array, DensityModel
 from recognizer.spotting import MISSED_FRAMES
 
 OVER_FRAMES: Final = 2
-"""So long a performance must be over on the best path before it is an event."""
+"""Frames for which a performance must be over on the best path before it becomes an event."""
 AGAIN_FRAMES: Final = 9
-"""The same posture within 0.6 s of where the last one ended is that performance going on: some
-pause between two kicks. Whoever rests for longer performs again."""
+"""Frames after the end of a performance within which the same posture continues it, 0.6 s: some
+people pause between two kicks. After a longer rest a new performance begins."""
 SPEED_FRAMES: Final = 3
 """Limbs' speed is the change of their directions within so many frames."""
 KEPT_FRAMES: Final = 150

@@ -13,15 +13,17 @@ NAMED_FROM_FRAMES: Final = 15
 """A second of motion: less of it fits too many postures."""
 
 STILL_FRAMES: Final = 12
-"""So long a standstill parts two motions. Shorter ones occur within a motion, between two kicks."""
+"""Frames of standstill that separate two motions: shorter ones occur within a motion, between two
+kicks."""
 
 STILL: Final = 0.15
 """Spread of feature vectors (root mean square distance from their mean; 0.15 is one limb swaying by
 9 degrees) below which a body stands still: of true angles, 0.07 at most in T-poses and 0.19 at
-least in a second of any motion (r01, r04)."""
+least in a second of any motion (two performers, docs/measurements.md)."""
 
 MISSED_FRAMES: Final = 15
-"""So many frames in a row without a pose end what was going on: the next pose begins anew."""
+"""Frames in a row without a pose that end the motion in progress: the next pose begins a new
+one."""
 
 
 @dataclass(frozen=True, eq=False)

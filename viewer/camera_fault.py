@@ -12,11 +12,13 @@ from viewer import frozen_picture
 from viewer.background.background import DARK, Background
 
 STRIDE: Final = 4
-"""Every so many rows and columns are looked at for brightness."""
+"""Distance of the rows and columns whose brightness is sampled, pixels."""
 PLAIN: Final = 16.0
-"""Grey levels between the darkest and the brightest tenth of what shows no background at all."""
+"""Grey levels between the darkest and the brightest tenth of a picture, below which it shows no
+background at all."""
 VARIED: Final = 2 * PLAIN
-"""The same in a background that is not plain itself."""
+"""Grey levels between those tenths below which a picture is plain, where the background itself is
+not plain."""
 BLACK: Final = 60.0
 WHITE: Final = 195.0
 """Grey levels: below, a plain picture is called black; above, saturated."""

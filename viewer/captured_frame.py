@@ -11,7 +11,7 @@ class CapturedFrame(msgspec.Struct, frozen=True):
     """One picture and when it was taken."""
 
     index: int
-    """Its place in the video, also where only every n-th frame is taken."""
+    """Number of the frame in the video, also where only every n-th frame is taken."""
     captured_s: float
     """Seconds since the clip began, or by the room's clock for a camera."""
     clock_s: float
@@ -25,4 +25,4 @@ class CapturedFrame(msgspec.Struct, frozen=True):
     upright: Upright | None = None
     """How `picture` comes from the file's; None: it is that, made smaller."""
     hurried: bool = False
-    """It comes late: there is no time to look at more than the outline."""
+    """Whether the frame comes late, so that only the silhouette is computed."""

@@ -14,7 +14,7 @@ class ExpectedBody(NamedTuple):
 
     bdp: Bdp
     measured: bool
-    """Its lengths are those of the opening posture."""
+    """Whether its lengths are those of the opening posture."""
     pose: tuple[float, ...]
     """POSE_NAMES order, metres and degrees."""
     facing: Facing

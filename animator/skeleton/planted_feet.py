@@ -18,7 +18,8 @@ BLEND_S: Final = 0.2
 STANDS_FAST: Final = np.array([300.0, 3.0, 300.0])
 """How much more reluctantly than other joints a standing foot's ankle moves along each axis: over
 the floor not at all, up and down a little, since its tracked height varies by 8 mm, and a straight
-leg that is a centimetre too long bends by 18 degrees. Chosen on r01 and r04."""
+leg that is a centimetre too long bends by 18 degrees. Chosen on two performers
+(docs/measurements.md)."""
 HIP: Final = 3.0
 """How much more reluctantly a hip moves: both carry the pelvis and all that hangs on it."""
 

@@ -12,14 +12,15 @@ from calibration.board.corner_alignment import aligned
 from common.body.body import Vector
 
 WIDE_PX: Final = 2560
-"""Pictures are enlarged to about this width: markers of ten pixels are read then."""
+"""Width that pictures are enlarged to, pixels: markers of ten pixels can be read then."""
 BARE_PX: Final = 640
-"""The same of a chessboard, which has no markers to read: it takes long to be missed."""
+"""Width that pictures are reduced to for a chessboard, pixels: it has no markers, so that a full
+search takes long where there is no board."""
 LARGEST: Final = 4
 ROUGHLY: Final = 4
-"""Corners, not all in a line, that say roughly where a board is."""
+"""Fewest corners, not all in a line, that show roughly where a board is."""
 LEAST: Final = 6
-"""That must be seen well."""
+"""Fewest corners of a board that must be seen well."""
 
 Grey = NDArray[np.uint8]
 

@@ -10,15 +10,15 @@ from calibration.board.lens_start import Lens, Place, chained, undone
 from common.body.body import Vector
 
 SIGMA_PX: Final = 0.05
-"""How far a corner at rest is seen from where it is, before more is known."""
+"""Prior standard deviation of a resting corner in the picture, pixels."""
 FINEST_PX: Final = 0.01
-"""No sight is believed more than this."""
+"""Least standard deviation of a corner that any sight is given, pixels."""
 BELIEVED: Final = 3.0
-"""So many corners with SIGMA_PX are believed beside what a sight's own corners miss."""
+"""Weight of SIGMA_PX in a sight's standard deviation, as a number of corners."""
 SOFT: Final = 3.0
-"""Sigmas beyond which a miss counts linearly."""
+"""Residual beyond which the cost grows linearly, sigmas."""
 OFF_MIDDLE: Final = 0.03
-"""How far from the picture's middle a lens looks, in widths (one sigma)."""
+"""Standard deviation of a lens's centre about the middle of the picture, widths."""
 SQUARE: Final = 0.002
 """How far pixels are from being square."""
 BENT: Final = 0.5

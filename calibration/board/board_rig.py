@@ -32,14 +32,17 @@ LEAST_SHARED: Final = 4
 MOST_RESTS: Final = 80
 """What more tell is little."""
 LAST_RESTS: Final = 12
-"""Are kept whatever they show: the board is laid on the floor at the end."""
+"""Number of last rests that are kept whatever they show: the board is laid on the floor at the
+end."""
 ASTRAY: Final = 3.0
-"""A sight that misses by so many medians, and by this many pixels, is let go."""
+"""Error of a sight, in medians of all, above which it is dropped if it is above ASTRAY_PX too."""
 ASTRAY_PX: Final = 0.5
 POOR_PX: Final = 1.5
-"""What corners miss by on average where the board is not the one that was named."""
+"""Mean error of the corners, pixels, above which the board is held not to be the one that was
+named."""
 APART: Final = 0.02
-"""The same of two cameras that were not looking at the same moments, in widths of the picture."""
+"""Error of the board's corners, in widths of the picture, above which two cameras are held not to
+have looked at the same moments."""
 
 
 class BoardCalibration(NamedTuple):
@@ -48,7 +51,7 @@ class BoardCalibration(NamedTuple):
     rig: Rig
     quality: Quality
     moments: Moments
-    """That were used."""
+    """Instants of the videos that the rig was computed from."""
 
 
 def calibrated_by_board(

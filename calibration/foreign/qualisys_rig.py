@@ -13,7 +13,7 @@ UNIT: Final = 64.0
 """Parts of a pixel in which focal lengths and middles are told."""
 MM: Final = 1000.0
 TO_OPENCV: Final = np.diag([1.0, -1.0, -1.0])
-"""Its cameras look along -z with y up."""
+"""Turn of Qualisys's camera axes (y up, looking along -z) to OpenCV's."""
 LARGEST: Final = 10_000_000
 
 

@@ -14,20 +14,20 @@ from common.rig.upright import Shift
 
 AS_IT_WAS: Final = Shift(0.0, 0.0, 0.0)
 OTHERWISE_PX: Final = 1.0
-"""Pictures that are shifted by more against each other are of a camera that was moved."""
+"""Shift between two pictures of a camera, pixels, above which the camera was moved."""
 UNCONFIRMED_LEFT: Final = 0.5
 """Share of the confidence that is left until the person has placed a camera that was moved."""
 MOVED_LEFT: Final = 0.05
-"""The same while a rig is used that a camera has left."""
+"""Share of the confidence that is left while the rig in use is one that a camera has left."""
 
 
 class MovedCameras(NamedTuple):
     """What the viewers tell of how their cameras stand."""
 
     now: tuple[Shift, ...] = (AS_IT_WAS, AS_IT_WAS)
-    """Against the start of the run."""
+    """Shift of each camera's picture since the start of the run."""
     of_rig: tuple[Shift, ...] = (AS_IT_WAS, AS_IT_WAS)
-    """The same when the rig in use was told."""
+    """Shift of each camera's picture when the rig in use was computed."""
     unconfirmed: tuple[ViewerNumber, ...] = ()
     """Cameras whose place in it was told by their picture alone, as if turned on the spot."""
 

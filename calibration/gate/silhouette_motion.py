@@ -8,8 +8,8 @@ from common.bus.instant import Instant
 from common.bus.messages import MOTION_S, Report
 
 MOVED: Final = 0.15
-"""Pixels that became the person's or ceased to be, as a share of the silhouette, where somebody
-moves: 0.05 at least in 95 % of the half seconds of dev's motions, 0.34 in the middle."""
+"""Share of the silhouette's pixels that change from which a person moves. In 95 % of the half seconds
+of recorded motion it is 0.05 at least, in the median 0.34 (docs/measurements.md)."""
 
 
 class Shown(NamedTuple):

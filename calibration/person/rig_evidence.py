@@ -25,9 +25,10 @@ LEAST_SURE: Final = 0.12
 INDEPENDENT_HZ: Final = 1.0
 """How often in a second a landmark errs anew: the network errs alike in neighbouring frames."""
 MOST_INDEPENDENT: Final = 5.0
-"""For so many moments a clip counts at first, however long: a network has habits that no length of
-film undoes. A minute of r01 and r04 gave rigs that were off by 46 and 59 mm without this, 25 and 23
-with it. What the film itself says of that is asked later: `film_worth.py`."""
+"""Number of independent moments that a clip counts for at first, however long it is: the network's
+systematic errors do not average out. A minute of each of two performers gave rigs that were 46 and
+59 mm off without this bound, 25 and 23 with it (docs/measurements.md). `film_worth.py` later
+estimates the number from the clip itself."""
 
 Sides = NDArray[np.bool_]
 """(n, 3) whether one view has the sides of a part the other way round than the other."""

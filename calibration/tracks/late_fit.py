@@ -12,7 +12,7 @@ from calibration.tracks.view_relation import relation_of, terms_of
 from common.body.body import OTHER_SIDE, Vector
 
 LEAST_SHARED: Final = 12
-"""So many of them both views must have: what fewer show fits anything."""
+"""Fewest moments that both views must share: fewer fit any relation."""
 ERR: Final = 0.022
 """By what landmarks miss the relation, heights of the person."""
 SURE: Final = 0.12

@@ -23,29 +23,32 @@ from calibration.tracks.late_fit import LEAST_SHARED, SURE, Fit, fits_of
 from calibration.tracks.moving_alike import promising
 
 MOMENTS: Final = 120
-"""So many of view 1, evenly spread, are looked at."""
+"""Number of moments of view 1, evenly spread, that latenesses are fitted to."""
 STEP_S: Final = 0.07
-"""Latenesses that are tried at first are so far apart, or a frame."""
+"""Distance between the latenesses of the first search, seconds; a frame, where that is longer."""
 MOST_TRIED: Final = 900
-"""Where there are more, only the promising are tried: both views last more than half a minute."""
+"""Number of latenesses above which only the promising ones are fitted: both views last more than
+half a minute."""
 NEAR_BEST_S: Final = 1.0
-"""And all that are so near to the best of them."""
+"""Distance from the best of the promising latenesses, seconds, within which all are fitted too."""
 FINE_FRAMES: Final = np.arange(-6, 7) / 4
-"""Then around the likeliest."""
+"""Offsets from the likeliest lateness, frames, that the last search fits."""
 SHARED_S: Final = 2.0
-"""A clock that leaves less in common is not told."""
+"""Least time that both views must have in common, seconds, for a lateness to be reported."""
 AS_GOOD, SURE_AS_GOOD = 1.2, 1.4
-"""What misses by less, in misses of the likeliest, may as well be so: by the second where landmarks
-err much and that would change the times, and for the times as they are ..."""
+"""Ratio of a lateness's misses to those of the likeliest, up to which it may be the right one:
+SURE_AS_GOOD where landmarks err much and it would change the times, AS_GOOD for the times as they
+are."""
 CLEAR: Final = 0.2
-"""Landmarks err little where the likeliest misses by no more: by 0.06 to 0.15 in walks of r01 and
-r04, by 0.3 and more in made-up ones."""
+"""Misses of the likeliest lateness up to which landmarks count as accurate: 0.06 to 0.15 in walks
+of two performers, 0.3 and more in synthetic ones (docs/measurements.md)."""
 AS_MUCH: Final = 1.0 / 3.0
-"""... where it explains such a share of the moments, at least. All three: walks of r01 and r04 with
-offsets of -3 to 3 s, and made-up ones (seeds from 2000 on)."""
+"""Least share of the moments that the likeliest lateness must explain for landmarks to count as
+accurate. Chosen with AS_GOOD and CLEAR on walks of two performers at offsets of -3 to 3 s, and on
+synthetic ones (docs/measurements.md)."""
 ONE_S, WIDE_S = 0.25, 0.45
-"""Latenesses that differ by less are one, for nobody steps faster; by the second where all between
-them are as good: who moves slowly shows time less exactly."""
+"""Difference of two latenesses, seconds, below which they count as one, since no person steps
+faster; WIDE_S where all between them fit as well, because a slow walk shows time less exactly."""
 LEAST_LATE: Final = 0.6
 """Share of a frame by which view 2 must be late before its clock is set."""
 

@@ -14,13 +14,13 @@ from calibration.tracks.sight_lines import Numbers
 from common.body.body import Vector
 
 PEAKS: Final = 120
-"""So many latenesses at which both views move most alike are worth a fit: made-up walks of one to
-three minutes (seeds from 2000 on) have the true one among the first 20, whose person moves at
-random among the first 110."""
+"""Number of latenesses at which both views move most alike that are fitted. In synthetic walks of
+one to three minutes the true one is among the first 20, where a person moves at random among the
+first 110 (docs/measurements.md)."""
 AROUND: Final = np.arange(-1, 2)
 """With their neighbours, and with 0 and its own."""
 EVENLY: Final = 150
-"""So many that are spread evenly are worth one, too: they show what is explained by chance."""
+"""Number of evenly spread latenesses that are fitted as well: they show what fits by chance."""
 LEAST_SHARE: Final = 0.1
 """Of what view 1 shows view 2 must show so much, too: what fewer show is like anything."""
 Steps = NDArray[np.int64]

@@ -17,7 +17,7 @@ TRIED: Final = np.stack(
 """Of directions in either picture from down, degrees, and of how much more view 1 counts than view
 2 (of its logarithm)."""
 FINER: Final = (1.0, 1.0 / 6.0, 1.0 / 36.0)
-"""Then around the best, each time in so much smaller steps."""
+"""Steps of the searches around the best, one after the other, in those of the first search."""
 
 
 class Relation(NamedTuple):

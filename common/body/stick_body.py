@@ -57,7 +57,7 @@ def _thesis() -> Stickman:
 def _adult() -> Stickman:
     """Joints where adults bend; parts shaped as clothed silhouettes are.
 
-    Lengths and radii were read off the performers r01 and r04.
+    Lengths and radii were read off two performers (docs/measurements.md).
     """
     upper_arm, forearm, thigh, shin = 0.157, 0.140, 0.252, 0.240
     lengths = [0.322, 0.143, thigh, thigh, shin, shin, upper_arm, upper_arm, forearm, forearm]

@@ -43,7 +43,7 @@ def jobs_of(given: Sequence[Recording], split: str, kind: Recognizer) -> Iterato
 
     Args:
         given: Of everybody.
-        split: EACH_IN_TURN, or performers to learn from and to test on: "r01,r04:r07", "s1*:s2*".
+        split: EACH_IN_TURN, or performers to learn from and to test on: "anna,ben:cleo", "s1*:s2*".
         kind: Of model.
 
     Raises:
@@ -91,7 +91,7 @@ def parts_of(given: Sequence[Recording], split: str) -> Fold | None:
     if not colon or not all(parts):
         raise TrainingError(
             f"the split {split!r} must be {EACH_IN_TURN} or name performers that are there, "
-            f"to learn from and to test on, as in r01,r04:r07"
+            f"to learn from and to test on, as in anna,ben:cleo"
         )
     return parts
 

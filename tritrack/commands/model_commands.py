@@ -194,7 +194,7 @@ def evaluate_postures(
     ],
     out: Out,
     split: Annotated[
-        str, typer.Option(help="Or whom to learn from and test on: r01,r04:r07, s1*:s2*")
+        str, typer.Option(help="Or whom to learn from and test on: anna,ben:cleo, s1*:s2*")
     ] = "leave-one-performer-out",
     recognizer: Annotated[
         Literal["both", "default", "paper"], typer.Option(help="Which models, side by side.")

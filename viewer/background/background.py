@@ -39,9 +39,9 @@ class Background(NamedTuple):
     low: Floats
     """(H, W, 3) least grey levels that were seen while nobody was there (W4)."""
     high: Floats
-    """(H, W, 3) greatest ones likewise."""
+    """(H, W, 3) greatest values in the frames that the background was learnt from."""
     step: Floats
-    """(H, W, 3) largest changes between two frames likewise."""
+    """(H, W, 3) largest changes between two of those frames."""
 
 
 class BackgroundModel(NamedTuple):

@@ -18,21 +18,23 @@ LOOK_EVERY: Final = 4
 AGAIN: Final = 2
 """Looks in a row that must find the same: then it stands still again."""
 CORNERS, FEWEST = 80, 16
-"""Marks of the background that are looked for, and as few as tell anything."""
+"""Number of marks of the background that are sought, and the fewest that are used."""
 APART: Final = 0.05
-"""How far marks are from each other, in heights of the picture."""
+"""Least distance between two marks, heights of the picture."""
 PATCH: Final = 13
-"""Side of what is compared about a mark, pixels."""
+"""Side of the patch that is compared about a mark, pixels."""
 EVEN: Final = 21
-"""Side of the means that are taken off: light does not count."""
+"""Side of the local means that are subtracted so that light does not count, pixels."""
 ALIKE: Final = 0.85
-"""Correlation of marks that have not moved, half of them at least."""
+"""Correlation of patches from which a mark has not moved; half of the marks must reach it."""
 FOUND: Final = 0.5
-"""Share of the marks in the picture that must be found again, all by one turn ..."""
+"""Least share of the marks in the picture that one turn must explain for the camera to count as
+moved."""
 CLOSE_PX: Final = 1.5
-"""... within so much."""
+"""Distance from where the turn puts a mark within which it counts as found, pixels."""
 LEAST_PX: Final = 1.2
-"""By which a camera must be moved that is said to be: 0.3 degrees of a lens of 44 at 160 pixels."""
+"""Shift from which a camera is reported as moved, pixels: 0.3 degrees of a lens of 44 degrees at
+160 pixels."""
 
 
 class State(NamedTuple):
@@ -47,11 +49,11 @@ class State(NamedTuple):
     turn: Vector
     """(3, 3) of what is seen, since then; in the camera's axes."""
     begun: Vector
-    """The same as it was when this background was learnt: it may have been turned before."""
+    """(3, 3) that turn when this background was learnt: the camera may have been turned before."""
     waited: int = 0
-    """Frames since the last look."""
+    """Frames since the marks were last sought."""
     found: Vector | None = None
-    """The turn that the last look found, where it was another."""
+    """The turn that the last search found, where it differs."""
     looks: int = 0
     """How many looks in a row found that."""
 

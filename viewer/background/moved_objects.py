@@ -13,19 +13,20 @@ from viewer.background.background import Background, even_light, spread_of
 from viewer.background.image_stack import CHANGES, LUMA, Floats, median, squares
 
 AT_REST_S: Final = 10.0
-"""Nobody who stands holds still for so long, edges and all; who lies still for longer is lost until
-they stir."""
+"""Seconds after which a region that stays the same is an object: no standing person holds still for
+so long, edges included. A person who lies still for longer is lost until they move."""
 FEWEST: Final = 6
-"""So many pictures at least tell that."""
+"""Fewest pictures of that time from which a moved object is recognised."""
 CALM: Final = 0.9
-"""Share of them in which a pixel shows the same: somebody may pass before it."""
+"""Least share of those pictures in which a pixel of an object is the same: a person may pass before
+it."""
 RESTLESS: Final = 0.35
-"""Less than this share of what is around a thing moves; around a trunk that bends more does."""
+"""Share of an object's surroundings that may move; around a bending trunk more does."""
 LOOKS: Final = 6
-"""So often within that time the background is looked at."""
+"""Number of pictures within that time that are compared with the background."""
 SPECKS_PX: Final = 5
 EDGE_PX: Final = 2
-"""How far beyond what differs clearly a thing's edge reaches."""
+"""Width of an object's edge beyond what differs clearly from the background, pixels."""
 
 
 class Patch(NamedTuple):
@@ -37,7 +38,7 @@ class Patch(NamedTuple):
     centre: Floats
     """(n, 3) grey levels of these pixels."""
     spread: Floats
-    """(n, 2) likewise."""
+    """(n, 2) standard deviations of brightness and of colour of these pixels, grey levels."""
 
 
 def patches_of(

@@ -19,15 +19,19 @@ SEGMENT_SIGMA: Final = 0.8
 LEAST_SEGMENT_PX: Final = 20
 """Felzenszwalb and Huttenlocher's own values for pictures of this size (T7)."""
 MOST_HIDDEN: Final = 0.25
-"""Nobody hides more of a picture than this; then several people roam in it."""
+"""Largest share of a picture that one standing person hides; more is hidden by several people who
+move."""
 OUTSIDE: Final = 0.5
-"""A segment that lies outside of where people are to this share is background ..."""
+"""Share of a segment outside of where people are, from which the segment is background."""
 AT_EDGE_PX: Final = 8
-"""... and so is one that reaches the picture's border there with so many pixels."""
+"""Pixels of a segment on the picture's border outside of where people are, from which it is
+background."""
 INSIDE: Final = 0.3
-"""A segment that is not, and lies inside to this share, is person as a whole: legs that stand."""
+"""Share of another segment inside of where people are, from which all of it is the person: legs
+that stand still."""
 SHOWN: Final = 0.1
-"""What frames show in less than this share may as well be clothes of the wall's brightness."""
+"""Share of the frames below which a colour that they show may be clothes of the wall's
+brightness."""
 LEAST_SHOWN: Final = 2
 """Fewer frames than this do not show a pixel."""
 ALIKE: Final = 2.5

@@ -12,17 +12,20 @@ from viewer.landmarks.landmark_looks import BINS, CELLS, SHIPPED, seen, seen_twi
 from viewer.landmarks.landmark_window import PLANES, SIDE, Planes
 
 FARTHEST: Final = 0.8
-"""No peak is farther from the middle of its highest cell, in cells."""
+"""Largest distance of a peak from the middle of its highest cell, cells."""
 DEEP: Final = 16.0
-"""A cell whose logit lies so far below the highest is left out: all cells of a map together would
+"""Distance below the highest logit from which a cell is left out: all cells of a map together would
 add a thousandth."""
 APART: Final = 4
-"""The next peak of a map is more cells than this from the highest, down or across."""
+"""Distance of a map's second peak from its highest, down or across, cells: it is larger than
+this."""
 PLATT: Final = (0.75, 0.94, 0.57)
-"""Of the network's own confidence, of how much of a joint's map lies about its peak, and 1: the
-logit of how often a joint was less than 0.03 statures off."""
+"""Platt scaling of a joint's confidence: weights of the network's own logit, of the logit of the
+share of the map about the peak, and the offset; the target is a joint less than 0.03 statures
+off."""
 PLATT_OF_SECOND: Final = (-0.08, 1.52, 0.54)
-"""Likewise of where else a joint may be: how often it was there, and not at the highest."""
+"""Platt scaling of the second place of a joint: how often it was there and not at the highest
+place."""
 
 
 class Found(NamedTuple):
@@ -39,7 +42,7 @@ class Found(NamedTuple):
     second: NDArray[np.float64]
     """(15, 2) where else each joint may be, as `joints`."""
     second_confidence: Vector
-    """(15,) how probably it is there instead, likewise."""
+    """(15,) probability that the joint is at its second place instead."""
 
 
 def find(planes: Planes, network: Path = SHIPPED, twice: bool = False) -> Found:

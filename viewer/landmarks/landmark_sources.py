@@ -14,7 +14,7 @@ from viewer.landmarks.mediapipe_source import MediaPipe, refuse_where_missing
 from viewer.landmarks.outside_source import OutsideSource
 
 Sources = Mapping[ViewerNumber, OutsideSource]
-"""Those of some views; empty where no source outside is named."""
+"""Sources of landmarks outside of the program, by view; empty where the settings name none."""
 
 
 @contextmanager

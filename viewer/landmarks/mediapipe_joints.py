@@ -11,8 +11,9 @@ from viewer.landmarks.fifteen_joints import facing_deg, fifteen, fifteen_shares
 from viewer.landmarks.keypoint_layouts import body_points, extremity_points
 
 FACES_SO: Final = 0.9
-"""How probably somebody of whom shoulders, hips and nose say front or back faces so: all of 900
-frames of r01 and r04, who face the cameras, and 91 % of 936 of made-up people who turn about."""
+"""Probability that a person faces front or back as shoulders, hips and nose say: right in all 900
+frames of two performers facing the cameras and in 91 % of 936 frames of synthetic people that turn
+about (docs/measurements.md)."""
 
 
 def landmarks_of(points: NDArray[np.float32], shown: Size, working: Size) -> Landmarks:

@@ -25,7 +25,8 @@ class PosedModel(NamedTuple):
     """Of the picture, pixels."""
     body: Vector
     pose: Vector
-    """Its position is 0: the place in the picture is in `view`."""
+    """The 25 motion parameters; the position is 0, because `view` holds the place in the
+    picture."""
     view: Vector
     score: float = 0.0
     matches: int = 0

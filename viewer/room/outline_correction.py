@@ -30,8 +30,8 @@ TIGHT: Final = 0.06
 REACH: Final = 0.1
 """Statures from a bone's axis to the farthest of the body: a hand, a hem."""
 MUCH: Final = 0.15
-"""So much of an outline far from the body is a thing. Less may be an arm that the landmarks have
-elsewhere, and stays."""
+"""Share of a silhouette far from the body, from which that part is an object. Less may be an arm
+that the landmarks place elsewhere, and stays."""
 COVERED: Final = 0.35
 """A bone with less of its axis in the outline is missing there."""
 FEW: Final = 1

@@ -12,8 +12,8 @@ from viewer.landmarks.body_region import Bytes, body_region
 from viewer.landmarks.own_landmarks import found_anywhere, found_between
 
 NOBODY: Final = 0.35
-"""Where it is less likely than this that nobody is there, somebody is: 0.00 to 0.17 with somebody,
-0.46 to 0.99 in empty rooms of r01, r04 and made-up people."""
+"""Probability that a picture is empty, below which it shows a person: 0.00 to 0.17 in pictures of a
+person, 0.46 to 0.99 in empty ones (docs/measurements.md)."""
 AROUND: Final = 0.07
 """Statures around the body that are not believed to be room: landmarks that nothing else holds are
 off by so much, and shadows lie there."""

@@ -13,25 +13,26 @@ from viewer.background.occluded_background import MOST_HIDDEN
 from viewer.room.room_people import Look
 
 BEYOND: Final = (-0.03, -0.015, 0.0, 0.015, 0.03, 0.05)
-"""Statures beyond the bodies of landmarks at which votes are taken: a pixel that is deep inside of
-them has all, one at their contour half."""
+"""Distances beyond the bodies of landmarks at which votes are taken, statures: a pixel deep inside
+a body has all votes, one at its contour half."""
 NEAR: Final = 0.15
-"""Statures around them in which colours are compared ..."""
+"""Distance from the bodies of landmarks within which colours are compared, statures."""
 SOMETIMES: Final = 0.2
-"""... where so many of the frames have them."""
+"""Share of the frames whose bodies a pixel must be near to for that."""
 ROUNDS: Final = 5
 COUNTS: Final = 0.7
-"""How much of what a colour says is believed: neighbours say nearly the same."""
+"""Weight of what a pixel's colour says: neighbouring pixels say nearly the same."""
 SHADES: Final = 8
-"""Steps of each of three colours that are told apart."""
+"""Number of steps of each of three colours."""
 UNSEEN: Final = 1e-4
-"""Of all pixels, so many are taken to have a colour that none has."""
+"""Share of all pixels that every colour is given besides those that have it."""
 SURELY: Final = 0.02
-"""Votes are never surer than this."""
+"""Least probability of either answer of a vote."""
 SMOOTH_SHARE: Final = 1 / 12
-"""Of the picture's height: as far as a pixel's neighbours of its own colour are asked ..."""
+"""Distance up to which a pixel's neighbours of its own colour are compared, as a share of the
+picture's height, where colours vary by more than ALIKE."""
 ALIKE: Final = 3e-5
-"""... where the variance of colours, of which white has 1, is more than this; else all are."""
+"""Variance of colours, of which white has 1, up to which all neighbours are compared."""
 
 
 def standing(centre: Floats, looks: Sequence[Look]) -> Mask:

@@ -21,7 +21,7 @@ HIDDEN: Final = 16
 
 
 LIKELY: Final = np.float32(-0.4)
-"""Log odds from which a pixel is body: chosen on development performers r01 and r04."""
+"""Log odds from which a pixel is body: chosen on two performers (docs/measurements.md)."""
 
 
 class PixelClassifier(NamedTuple):

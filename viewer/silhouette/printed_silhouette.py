@@ -13,10 +13,11 @@ from viewer.background.image_stack import Floats
 TIMES: Final = 2.0
 """How many times the flicker a pixel must leave its range by; W4's own."""
 LEAST: Final = 20.0
-"""Grey levels that it must leave it by in any case: chosen on r01 and r04 among 4 to 20."""
+"""Least difference from the background, grey levels: chosen among 4 to 20 on two performers
+(docs/measurements.md)."""
 SQUARE: Final = np.ones((3, 3), np.uint8)
-"""Of the closing. An opening of that size, too, would eat the limbs at 160x120: IoU 0.58 and 0.64
-of views 1 and 2 of r01 and r04 instead of 0.74 and 0.68."""
+"""Structuring element of the closing, pixels. An opening by it as well would erode the limbs at
+160x120: IoU 0.58 and 0.64 of views 1 and 2 instead of 0.74 and 0.68 (docs/measurements.md)."""
 HOLE_SHARE: Final = 0.001
 """Holes up to this share of the picture are filled; between arm and trunk there are larger."""
 

@@ -12,7 +12,8 @@ from common.raster.similarity import Mask
 STATURE_PX: Final = 100
 """Stature of the body in the normalised silhouette."""
 NORMAL_SIZE: Final = (128, 160)
-"""Its width and height: arms stretched out or up fit in, and a row is two words."""
+"""Width and height of a normalised silhouette, pixels: arms stretched out or raised fit in, and a
+row is two words."""
 INSIDE: Final = 0.5
 """A pixel belongs to the person who covers half of it."""
 

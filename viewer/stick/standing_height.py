@@ -15,7 +15,7 @@ UPRIGHT: Final = 0.75
 NEARER: Final = 0.15
 """Feet that move by this share of the height tell that the person comes nearer."""
 MOST_SAMPLES: Final = 300
-"""So many heights tell the slope."""
+"""Most heights that the slope is fitted to."""
 
 
 class Standing(NamedTuple):

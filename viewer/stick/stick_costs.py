@@ -26,7 +26,7 @@ COSTS: Final = np.array([0.006, 0.06, 0.02, 0.02, 0.2, 10.0, 0.01, 0.012, 1.0, 0
 trunk, legs and arms to leave the plane of the picture; for breadth and for stature to change by all
 they are; for the trunk to lean by 90 degrees; for an elbow to bend in the plane by 90, or a knee
 where the trunk shows its breadth; for a knee or foot seen from the front to cross to the other side
-by a stature. Chosen on r01 and r04, each halved and doubled."""
+by a stature. Chosen on two performers, each halved and doubled (docs/measurements.md)."""
 
 TILTED: Final = 0.15
 """1 - ratio^2 at which a limb's leaving the plane has half its full cost (23 degrees): what cannot
