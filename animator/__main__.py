@@ -31,7 +31,7 @@ BEHIND: Final = 10
 MOST_REPORTS: Final = 16
 """Reports that wait for their body: it comes within a frame or two."""
 START_S: Final = 0.2
-"""So often the run is told that the page is there, until it begins."""
+"""Seconds between two announcements that the page is there, until the run begins."""
 LEFT_S: Final = 3.0
 """A browser that is gone for so long has left; one that loads the page anew is back sooner."""
 MOST_LINGER_S: Final = 3600.0

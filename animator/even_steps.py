@@ -17,7 +17,7 @@ TREMBLES: Final = 0.25
 """Rows so near to whole frames, in frames, are taken for them: clocks tremble, and of many cameras
 say whole milliseconds."""
 AROUND: Final = 9
-"""So many steps say what rate a stretch has."""
+"""Number of steps from whose median the rate of a stretch is taken."""
 FASTEST: Final = 10
 """Where the rate varies, the file's step is this percentile of those of all stretches: of the
 fastest ones no row is passed over."""

@@ -62,7 +62,7 @@ class Filming(NamedTuple):
     """The cameras, by whose names the files and arrays are called."""
     room_seed: int
     seed: int
-    """Of noise and exposure."""
+    """Seed of people, motion and noise: one seed gives the same clips, byte for byte."""
 
 
 def write_set(

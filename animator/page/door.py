@@ -15,7 +15,7 @@ EVERY_ADDRESS: Final = ("0.0.0.0", "::")
 BY_SETTINGS: Final = "set page.port to another one"
 """How a live run takes another port."""
 BY_OPTION: Final = f"{BY_SETTINGS} (or --port)"
-"""... and a command that has the option, too."""
+"""What to change where the command has the option as well."""
 
 
 class PageError(RuntimeError):

@@ -23,7 +23,7 @@ class ShownView(msgspec.Struct, frozen=True):
 
     size: tuple[int, int]
     outline: list[Numbers]
-    """The silhouette's contours: x, y, x, y ..."""
+    """The silhouette's contours, each x, y, x, y and so on, pixels."""
     limbs: list[Numbers]
     """The fitted body's, LIMBS order; one that is not before the camera has none."""
     joints: Numbers
@@ -99,7 +99,7 @@ class Greeting(msgspec.Struct, frozen=True, tag="hello", tag_field="kind"):
     angles: tuple[str, ...] = ANGLE_NAMES
     joints: tuple[str, ...] = ALL_JOINT_NAMES
     large: int = len(JOINT_NAMES)
-    """So many of the joints are drawn large."""
+    """Number of the joints that are drawn large, from the first on."""
     strokes: tuple[tuple[int, int], ...] = EXTREMITY_LINES
     """Hands and feet in the views, between joints."""
     limbs: tuple[str, ...] = LIMBS

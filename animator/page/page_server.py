@@ -38,7 +38,7 @@ WAITING: Final = 256
 MOST_SAID_BYTES: Final = 1000
 """A browser says short things alone, where a page does not take more."""
 MOST_ASKED: Final = 16
-"""Of these, so many wait to be heard."""
+"""Most requests of pages that wait to be answered."""
 OPENS_S: Final = 20.0
 """A server that does not listen by then never will, as where a name is looked up in vain."""
 MOST_BROWSERS: Final = 50

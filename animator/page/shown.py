@@ -45,7 +45,7 @@ from common.rig.camera import Camera, Rig
 from common.rig.upright_camera import as_worked_on
 
 MOST_RIVALS: Final = 6
-"""So many postures are told with their probability."""
+"""Most postures that are shown with their probability."""
 SMOOTH_PX: Final = 0.7
 """An outline's corners lie no farther from its pixels."""
 FACING_WORDS: Final[dict[Facing, str]] = {"facade": "front or back", "flank": "side"}

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from typing import Final
 
 ROWS_HZ: Final = 15.0
-"""So many frames a second, whatever the film's rate: enough to see a joint that jumps."""
+"""Frames a second that are played, whatever the video's rate: enough to see a joint that jumps."""
 
 
 class Player:

@@ -30,7 +30,7 @@ RESIZED: Final = 0.02
 BALL_M: Final = 0.022
 """Radius of a joint: large enough to be taken hold of."""
 CHOSEN: Final = 1.7
-"""So much larger is the joint that keys move."""
+"""Size of the joint that keys move, in that of the others."""
 FRONT_M: Final = 0.02
 """How far the stick stands before the picture, so that nothing of it drowns there."""
 SKY_LIGHT, SUN_LIGHT = 1.0, 0.9

@@ -14,7 +14,7 @@ from common.body.extremities import ALL_JOINT_NAMES
 Floats = NDArray[np.float64]
 
 BLEND_S: Final = 0.2
-"""So long before and after it stands a foot goes over to where it was measured."""
+"""Seconds before and after a stance in which a foot goes over to where it was measured."""
 STANDS_FAST: Final = np.array([300.0, 3.0, 300.0])
 """How much more reluctantly than other joints a standing foot's ankle moves along each axis: over
 the floor not at all, up and down a little, since its tracked height varies by 8 mm, and a straight

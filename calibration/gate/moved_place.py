@@ -29,9 +29,9 @@ PLACES: Final = {
     "height_2": 0.035,
     "z_2": 0.05,
 }
-"""Standard deviation of a moved camera's place and turn about those that its picture alone gives, as
-if it had turned on the spot; radians and metres. With 0.15 m landmarks pulled cameras that had only
-turned: joints were 48 mm off instead of 22 (docs/measurements.md)."""
+"""Standard deviation of a moved camera's place and turn about those that its picture alone gives,
+as if it had turned on the spot; radians and metres. With 0.15 m landmarks pulled cameras that had
+only turned: joints were 48 mm off instead of 22 (docs/measurements.md)."""
 TURNS: Final = ("pitch_1", "roll_1")
 """What is free of the first where both were moved: its place and yaw are the world's."""
 WALL: Final = 1.5

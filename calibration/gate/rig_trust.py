@@ -29,17 +29,17 @@ SURE: Final = 0.6
 FEWEST, ENOUGH = 12, 40
 """Moments in which both views must see the person, and as many as are looked at."""
 MOST_APART_MM: Final = 65.0
-"""Distance between the places that two views give a joint, above which a rig is not believed. With a
-good rig it is 28 mm at most for two performers, 52 mm for people that the network of landmarks
+"""Distance between the places that two views give a joint, above which a rig is not believed. With
+a good rig it is 28 mm at most for two performers, 52 mm for people that the network of landmarks
 sees less well (docs/measurements.md)."""
 FLOOR_MM: Final = (-35.0, 85.0)
 """Where a good rig has the soles, by ankles of bare feet: heels lift them by up to 8 cm."""
 STATURES_M: Final = (0.9, 2.3)
 MOST_LATE_FRAMES: Final = 0.75
 MOST_FACING_DEG: Final = 45.0
-"""Difference of the views' facings above which a rig is not believed: half of a quarter turn, because
-two pictures of one camera differ by the angle between the rig's cameras. With a good rig facings
-differ by 13 degrees at most (docs/measurements.md)."""
+"""Difference of the views' facings above which a rig is not believed: half of a quarter turn,
+because two pictures of one camera differ by the angle between the rig's cameras. With a good rig
+facings differ by 13 degrees at most (docs/measurements.md)."""
 MOST_MOTION_MM: Final = 45.0
 """Views of one take disagree by 30 mm at most, of different takes mostly by 60."""
 

@@ -8,8 +8,8 @@ from common.bus.instant import Instant
 from common.bus.messages import MOTION_S, Report
 
 MOVED: Final = 0.15
-"""Share of the silhouette's pixels that change from which a person moves. In 95 % of the half seconds
-of recorded motion it is 0.05 at least, in the median 0.34 (docs/measurements.md)."""
+"""Share of the silhouette's pixels that change from which a person moves. In 95 % of the half
+seconds of recorded motion it is 0.05 at least, in the median 0.34 (docs/measurements.md)."""
 
 
 class Shown(NamedTuple):

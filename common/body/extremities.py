@@ -32,7 +32,7 @@ HEEL_OF_FOOT: Final = 0.24
 """How far the heel lies behind the ankle, as a share of the foot."""
 AHEAD_SHARE, BEHIND_SHARE = (1.0 - HEEL_OF_FOOT) * FOOT_SHARE, HEEL_OF_FOOT * FOOT_SHARE
 SOLE_SHARE: Final = 0.010
-"""So high are heel and toe while they stand: half as thick as a toe."""
+"""Height of heel and toe over the floor while they stand, statures: half as thick as a toe."""
 DOWN_SHARE: Final = 0.039 - SOLE_SHARE
 """How far both lie below the ankle."""
 TOES_OUT: Final = math.tan(math.radians(7.0))

@@ -29,13 +29,14 @@ NEAREST_M: Final = 0.05
 """A limb that reaches nearer to the camera, or behind it, is not drawn."""
 
 ACROSS, DOWN, AHEAD = 0, 3, 6
-"""Where a view vector has the rows of its R, world to camera ..."""
+"""Where a view vector has the three rows of R, world to camera."""
 SHIFT: Final = 9
-"""... its t, metres, ..."""
+"""Where a view vector has t, world to camera, metres."""
 FOCAL_X, FOCAL_Y, CENTRE_X, CENTRE_Y = 12, 13, 14, 15
-"""... its focal length and its centre, pixels, ..."""
+"""Where a view vector has the focal length and the centre, pixels."""
 DEPTH: Final = 16
-"""... and the depth of scaled orthography, metres; 0: true perspective."""
+"""Where a view vector has the depth of scaled orthography, metres; 0 there means true
+perspective."""
 VIEW: Final = 17
 """Numbers of a view vector."""
 

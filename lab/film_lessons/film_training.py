@@ -42,7 +42,7 @@ RATE, WARM, MEAN_OVER, KEEP_EVERY = 1e-3, 20, 50, 50
 FAR: Final = 0.3
 """A joint that is farther off counts no more than this, statures."""
 FORGETS: Final = 1.03
-"""So many times as much may joints of made-up people be off as before."""
+"""Largest ratio of the error on synthetic people, after to before, with which a network is kept."""
 GROUP: Final = 64
 """Pictures that are looked at together."""
 FEWEST: Final = 50
@@ -53,10 +53,9 @@ class Plan(NamedTuple):
     """How much is shown."""
 
     people: int = 300
-    """Made-up people, sixteen pictures each, are shown too, so that nothing is forgotten: our own,
-    ..."""
+    """Synthetic people, sixteen pictures each, that are shown so that nothing is forgotten."""
     anny_people: int = 150
-    """... and of the Anny model."""
+    """Synthetic people of the Anny model that are shown as well."""
     held_back: int = 40
     """Made-up people by whom it is told whether anything was forgotten."""
     backdrops: int = 600

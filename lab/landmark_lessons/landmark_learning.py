@@ -29,7 +29,7 @@ class Work(NamedTuple):
 
     network: nn.Module
     mean: nn.Module
-    """The same, its weights' running mean."""
+    """A network whose weights are the running mean of those of `network`."""
     adam: torch.optim.AdamW
     batch: int
     """The next one."""

@@ -26,7 +26,7 @@ ROUNDS: Final = 30
 """Most rounds of Baum-Welch: on the clips of two performers it converged in 12 to 30."""
 
 DENSITY_ROUNDS: Final = 20
-"""The same with densities."""
+"""Most rounds of Baum-Welch for models of densities."""
 
 MEAN_WEIGHT: Final = 1e-3
 """Frames' worth of the overall mean in each state's: one that training never entered has a mean."""

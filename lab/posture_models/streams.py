@@ -15,11 +15,11 @@ from recognizer.postures import DensityModel
 PAUSE_FRAMES: Final = (15, 60)
 """How long somebody stands between two joined performances."""
 BRIDGE_FRAMES: Final = 8
-"""So long somebody takes from the last pose of a performance to the stance of the next."""
+"""Frames from the last pose of a performance to the stance of the next."""
 SWAY_DEG: Final = 1.0
 """Of somebody who stands, with what the tracker errs by from frame to frame."""
 SWAY_LEGS: Final = 0.002
-"""The same of the root's place, in leg lengths."""
+"""Standard deviation of the root's sway in a stance, leg lengths."""
 LEFT: Final = 0.3
 """Distance of feature vectors, one limb by 17 degrees, within which a performance is over."""
 ANGLES: Final = len(ANGLE_NAMES)

@@ -28,7 +28,7 @@ from viewer.silhouette import silhouette
 from viewer.silhouette.pixel_classifier import HIDDEN, PixelClassifier, save
 
 EMPTY_FRAMES: Final = 8
-"""So many of a made-up clip show the room at first."""
+"""Frames at the start of a synthetic clip that show no person."""
 PERFORMANCES: Final = 70
 """People in rooms that are learnt from."""
 SIZE: Final = (320, 240)

@@ -14,7 +14,7 @@ from synth.person.skeleton import ANGLES, BONE_INDEX, CLAVICLE_LIFT, bone_frames
 SPINE: Final = {"spine05": 0.15, "spine04": 0.5, "spine03": 0.8, "spine02": 1.0, "spine01": 1.0}
 """How much of the way from pelvis to chest each of them turns."""
 NECK: Final = {"neck01": 0.3, "neck02": 0.55, "neck03": 0.8, "head": 1.0}
-"""The same from chest to head."""
+"""Share of the turn from chest to head that each bone of the neck has made."""
 TWIST: Final = 0.4
 """How much of a limb's twist its upper half has."""
 TWISTS: Final = np.array([name.endswith("twist") for name in ANGLES])

@@ -18,7 +18,7 @@ FOLLOW: Final = 0.85
 FOLLOW_FROM_M, FOLLOW_OVER_M = 0.05, 0.3
 """Where below the upper edge it begins to, and over which length."""
 APART_M: Final = 0.1
-"""So far beside the middle it follows one thigh alone."""
+"""Distance from the middle from which a skirt follows one thigh alone, metres."""
 
 
 class Tube(NamedTuple):

@@ -22,7 +22,7 @@ LYING_DEG: Final = (78.0, 95.0)
 STILLER: Final = 0.3
 """What is left of free motion in the limbs of who lies, the trunk's turning apart."""
 FLESH_M: Final = 0.09
-"""So far over the floor the lowest joint of a lying body is."""
+"""Height of a lying body's lowest joint over the floor, metres."""
 CARRIES: Final = [
     i for i, name in enumerate(JOINTS) if name[2:] not in ("elbow", "wrist", "knuckle")
 ]

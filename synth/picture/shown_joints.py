@@ -30,7 +30,7 @@ PARTS: Final = (
 )
 """What hides joints: from where to where, and how thick, in statures."""
 TRUNK: Final = 3
-"""So many parts are the trunk."""
+"""Number of body parts that make up the trunk."""
 ENDS: Final = np.array([[JOINT_NAMES.index(end) for end in part[:2]] for part in PARTS])
 THICK: Final = np.array([part[2] for part in PARTS])
 ALONG: Final = np.linspace(0.1, 0.9, 5)[:, None]

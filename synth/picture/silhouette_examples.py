@@ -32,7 +32,8 @@ SPEEDS, FAST = (0.7, 1.3), (1.3, 2.3)
 ARM_DEG, REST_DEG = (0.0, 3.0, 8.0, 20.0), (0.0, 2.0, 4.0, 6.0)
 """Standard deviations that arms, and all else, are turned by; one of them for a performance."""
 YAW_DEG: Final = (4.0, 4.0, 15.0)
-"""The same for the whole body about the vertical."""
+"""Standard deviations that the whole body is turned by about the vertical, one of them for a
+performance."""
 TURNING_DEG: Final = 180.0
 """How far somebody who turns goes round, to either side."""
 THICKER, LONGER, LOOSER = 0.06, 0.02, (0.5, 2.0)

@@ -56,7 +56,7 @@ class Opened(NamedTuple):
     settings: Settings
     """The run's own, with the video where it is now."""
     clip: Clip
-    """Its video, through camera 1."""
+    """The run's video, through camera 1."""
     source: Path
     notes_path: Path
 
