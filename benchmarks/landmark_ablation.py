@@ -33,7 +33,7 @@ from common.bus.messages import Body, Guide, Report
 from common.config import config_file
 from common.config.settings import Settings
 from common.rig.camera import Rig
-from common.video.clip_facts import both_cameras
+from common.video.clip_facts import whole_rig
 from common.video.clips import open_clip
 from integrator.rig.body_position import triangulate
 from integrator.rig.undistortion import undistorted_rig
@@ -119,7 +119,7 @@ def hurried(every: int) -> Iterator[None]:
 
 def rig_of(clip: Path, decoders: Decoders, settings: Settings) -> Rig:
     """Both cameras of a calibrated clip."""
-    rig = both_cameras(open_clip(settings, decoders.of[1]))
+    rig = whole_rig(open_clip(settings, decoders.of[1]))
     if rig is None:
         raise SystemExit(f"{clip}: no calibration")
     return rig

@@ -30,7 +30,7 @@ from common.raster.kernel import draw_body, view_of
 from common.raster.silhouette_report import unpack
 from common.raster.similarity import Mask
 from common.rig.camera import Rig
-from common.video.clip_facts import both_cameras
+from common.video.clip_facts import whole_rig
 from integrator.rig.undistortion import undistorted
 from runtime.offline.lockstep import Decoders, track_clip
 from runtime.offline.performance import Watch
@@ -250,7 +250,7 @@ def main() -> None:
                 settings, decoders, watch=Watch(lambda *row, to=rows: to.append(row), rows.clear)
             )
             write_run(asked.out / path.stem, tracked.bodies, settings, tracked.facts)
-            rig = both_cameras(tracked.clip)
+            rig = whole_rig(tracked.clip)
             assert rig is not None
             sheet(rows, rig, asked.out / f"{path.stem}.png")
             found[path.stem] = pair_of(rig, rows)

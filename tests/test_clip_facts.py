@@ -9,12 +9,12 @@ from common.video.clip_facts import (
     Clip,
     Meta,
     View,
-    both_cameras,
     set_back,
     shortfall,
     unread,
     unread_facts,
     uprights_of,
+    whole_rig,
 )
 from common.video.pictures import Ending
 
@@ -103,7 +103,7 @@ def test_a_viewer_that_is_not_there_gets_the_others_camera() -> None:
         ((SECOND,), (2,), (second, second)),
         ((FIRST,), (1,), (first, first)),
     ):
-        rig = both_cameras(clip_of(*views, rig_of=rig_of))
+        rig = whole_rig(clip_of(*views, rig_of=rig_of))
         assert rig is not None
         assert rig.cameras == due
-    assert both_cameras(clip_of(FIRST, SECOND)) is None
+    assert whole_rig(clip_of(FIRST, SECOND)) is None

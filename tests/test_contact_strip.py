@@ -67,7 +67,7 @@ def chosen(monkeypatch: pytest.MonkeyPatch, statuses: list[str], window: int) ->
 
     monkeypatch.setattr(module, "overridden", lambda *_: settings)
     monkeypatch.setattr("common.config.config_file.load", lambda path: path)
-    monkeypatch.setattr(module, "both_cameras", lambda clip: "rig")
+    monkeypatch.setattr(module, "whole_rig", lambda clip: "rig")
     monkeypatch.setattr(module, "Watch", lambda each, anew: SimpleNamespace(each=each, anew=anew))
     monkeypatch.setattr(module, "track_clip", track)
     monkeypatch.setattr(module, "_shown", showing)

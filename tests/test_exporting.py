@@ -47,6 +47,7 @@ def run(tmp_path: Path) -> Path:
                 pose=tuple(pose),
                 angles_raw_deg=(0.0,) * 17,
                 confidence=(0.5,) * 15,
+                seen=(True, False),
                 score=(0.8, 0.7),
             )
         )
@@ -67,8 +68,10 @@ def test_a_table_has_a_row_a_frame_and_empty_cells_where_nobody_is(run: Path) ->
     assert [row["frame"] for row in rows] == ["0", "1", "2", "3", "4", "5"]
     assert rows[0]["l_wrist_y_m"] == ""
     assert float(rows[3]["l_wrist_y_m"]) == pytest.approx(wrist[1], abs=1e-4)
-    assert (rows[3]["status"], rows[3]["views"], rows[3]["score_1"]) == ("tracking", "1", "0.8000")
-    assert len(rows[0]) == 6 + 45 + 17 + 15
+    assert (rows[3]["status"], rows[3]["person"]) == ("tracking", "0")
+    assert (rows[3]["seen_cam1"], rows[3]["seen_cam2"]) == ("1", "0")
+    assert (rows[3]["score_cam1"], rows[3]["score_cam2"]) == ("0.8000", "0.7000")
+    assert len(rows[0]) == 8 + 45 + 17 + 15
 
 
 def test_an_animation_is_written_where_it_is_asked_for(run: Path, tmp_path: Path) -> None:

@@ -134,6 +134,7 @@ def test_a_film_is_gone_through_twice_and_the_summary_tells_of_both(
     assert second_pass == (3, KNOWN, Course(heard.poses, work), FirstPass(odd, 1.0, Ending(40, 2)))
     assert done.facts == {
         "clip": "film",
+        "cameras": ["cam1", "cam2"],
         "performer": "anna",
         "posture_meant": "squat",
         "seconds": {"silhouettes": 1.0, "poses": 1.0, "all": 2.0},

@@ -62,7 +62,7 @@ def folder(tmp_path: Path) -> Path:
 def test_what_was_said_comes_back(folder: Path) -> None:
     one, two, body, named, empty = said()
     recording = read_recording(folder)
-    assert recording.reports == ([one], [two])
+    assert recording.reports == ([one], [two], *[[]] * 6)
     assert recording.bodies == [body, empty]
     assert recording.postures == [named]
     assert recording.head.settings == Settings()

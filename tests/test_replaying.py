@@ -93,7 +93,7 @@ def test_a_body_of_one_view_is_made_of_that_view_again_whatever_came_too_late(ru
 
 def test_all_that_was_said_is_said_again_in_its_order(run: Path) -> None:
     recording, bus = read_recording(run), LocalBus()
-    few = recording._replace(reports=tuple(each[:9] for each in recording.reports))  # type: ignore[arg-type]
+    few = recording._replace(reports=tuple(each[:9] for each in recording.reports))
     few = few._replace(bodies=recording.bodies[:9])
     reports, bodies, postures = (bus.subscribe(kind) for kind in (Report, Body, Posture))
     assert say(few, bus, speed=50.0) == 28

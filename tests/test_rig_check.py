@@ -136,7 +136,9 @@ def test_what_both_views_see_is_kept_until_a_camera_is_moved() -> None:
     witness({}, {1: seen_at(1, 0.2), 2: seen_at(2, 0.22)}, body_with())
     witness({}, {1: seen_at(1, 0.3), 2: seen_at(2, 0.32)}, body_with((2,)))
     witness({}, {1: seen_at(1, 0.4), 2: seen_at(2, 0.42)}, body_with())
-    first, second, size_px = witness.sighting(two_views())
+    sighting = witness.sighting(two_views())
+    assert sighting is not None
+    first, second, size_px = sighting
     assert first.times_s.tolist() == [0.0, 0.1, 0.2]
     assert second.times_s.tolist() == [0.02, 0.22]
     assert size_px == (160, 120)
@@ -149,7 +151,9 @@ def test_of_a_long_run_its_first_frames_are_kept(monkeypatch: pytest.MonkeyPatch
     witness = Witness()
     for n in range(5):
         witness({}, {1: seen_at(1, n / 10)} if n else {2: seen_at(2, 0.0)}, body_with())
-    first, second, _ = witness.sighting(two_views())
+    sighting = witness.sighting(two_views())
+    assert sighting is not None
+    first, second, _ = sighting
     assert first.times_s.tolist() == [0.1, 0.2, 0.3]
     assert second.times_s.tolist() == [0.0]
 

@@ -111,7 +111,7 @@ def test_a_clip_without_two_films_is_refused(
 ) -> None:
     clips = Clips(monkeypatch, TWO, msgspec.structs.replace(TWO, views=views))
     with pytest.raises(
-        CalibrationError, match=r"^c1 has not two recorded views: name clips of a rig$"
+        CalibrationError, match=r"^c1 has not two recorded views: name clips of a pair$"
     ):
         calibrated_by_clips(clips.paths, Given())
     assert clips.asked == []

@@ -15,6 +15,7 @@ from common.bus.messages import Body, Performance, Posture
 from common.config.settings import Settings
 from runtime.offline.lockstep import Decoders, track_clip
 from runtime.store.joint_arrays import on_disk
+from runtime.store.past_run import open_run
 from runtime.store.pose_arrays import poses
 from runtime.store.run_exports import EXPORTS
 from runtime.store.runs import (
@@ -30,6 +31,7 @@ from runtime.terminal import json_text
 N = 69
 CONTRACT = {
     "frame": ("i", (N,)),
+    "person": ("i", (N,)),
     "time_s": ("f", (N,)),
     "joints_m": ("f", (N, 22, 3)),
     "joint_names": ("U", (22,)),
@@ -39,6 +41,8 @@ CONTRACT = {
     "angles_raw_deg": ("f", (N, 17)),
     "confidence": ("f", (N, 22)),
     "status": ("U", (N,)),
+    "camera_names": ("U", (2,)),
+    "seen": ("b", (N, 2)),
     "views": ("U", (N,)),
     "score": ("f", (N, 2)),
     "facing": ("U", (N, 2)),
@@ -138,10 +142,34 @@ def test_only_what_the_views_bear_out_counts_as_believed() -> None:
     assert believed([body(0)]) is None
 
 
+def test_a_run_of_three_cameras_has_entries_of_each_by_name() -> None:
+    """And no word for who sees the person, which was made for two."""
+    pixels = tuple(((float(n), 2.0),) * len(JOINT_NAMES) for n in range(3))
+    several = {"seen": (True, False, True), "score": (0.5, 0.0, 0.7), "made_of": (1, -1, 1)}
+    tracked = body(1, joints_px=pixels, facing=("facade", "flank", "flank"), **several)
+    empty = body(0, seen=(False,) * 3, score=(0.0,) * 3, facing=("facade", "flank", "flank"))
+    found = poses([empty, tracked], ("left", "door"))
+    assert found["camera_names"].tolist() == ["left", "door", "cam3"]
+    assert found["seen"].tolist() == [[False] * 3, [True, False, True]]
+    assert found["score"].tolist() == [[0.0] * 3, [0.5, 0.0, 0.7]]
+    assert found["joints_px"].shape == (2, 3, len(JOINT_NAMES), 2)
+    assert found["joints_px"][1, :, 0, 0].tolist() == [0.0, 1.0, 2.0]
+    assert np.isnan(found["joints_px"][0]).all()
+    assert "views" not in found
+
+
+def test_a_run_of_three_cameras_is_read_again(tmp_path: Path) -> None:
+    several = {"seen": (True,) * 3, "score": (0.5,) * 3, "facing": ("flank",) * 3}
+    write_run(tmp_path, [body(0, **several)], Settings(), {"cameras": ["a", "b", "c"]})
+    run = open_run(tmp_path)
+    assert run.poses["camera_names"].tolist() == run.summary["cameras"] == ["a", "b", "c"]
+    assert run.poses["score"].shape == (1, 3)
+
+
 def test_a_run_without_frames_has_empty_arrays_of_the_same_shapes() -> None:
     for name, array in on_disk(poses([])).items():
         kind, shape = CONTRACT[name]
-        expected = shape if name in ("joint_names", "angle_names") else (0, *shape[1:])
+        expected = shape if name.endswith("_names") else (0, *shape[1:])
         assert (array.dtype.kind, array.shape) == (kind, expected)
 
 

@@ -148,7 +148,7 @@ def test_pictures_may_be_larger_than_what_is_worked_on(
         ({"landmarks": "mediapipe"}, "landmarks must be own or none"),
         ({"rate_hz": 0.0}, "rate_hz must be from 0 to 1000"),
         ({"stature_m": 17.5}, "stature_m must be from 0.5 to 2.6"),
-        ({"cameras": ("left", "right")}, "two cameras need a calibration"),
+        ({"cameras": ("left", "right")}, "several cameras need a calibration"),
         ({"cameras": "left"}, r"cameras is a list of names: \['left'\]"),
         ({"cameras": ("left", "left")}, "cameras names 'left' twice"),
         ({"size": (320, 240)}, r"size must look like 160x120, got '\(320, 240\)'"),

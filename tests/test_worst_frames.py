@@ -118,7 +118,7 @@ def drawn(monkeypatch: pytest.MonkeyPatch, rig: Any, truth: dict[str, Any]) -> t
         return clip
 
     monkeypatch.setattr(worst_frames, "open_clip", opened)
-    monkeypatch.setattr(worst_frames, "both_cameras", lambda one: rig)
+    monkeypatch.setattr(worst_frames, "whole_rig", lambda one: rig)
     monkeypatch.setattr(worst_frames, "recorded", frames_of(6))
     monkeypatch.setattr(worst_frames, "project", lambda camera, joints_m: camera * joints_m[:, :2])
     monkeypatch.setattr(

@@ -242,10 +242,13 @@ def _motionless(run: PastRun, error: Exception) -> ExportError:
 def _csv(run: PastRun, _name: str, _scale: Scale) -> Written:
     text = io.StringIO()
     further = EXTREMITY_NAMES if "extremities_m" in run.poses else ()
+    cameras = [str(name) for name in run.poses["camera_names"]]
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(
         [
-            *("frame", "time_s", "status", "views", "score_1", "score_2"),
+            *("frame", "person", "time_s", "status"),
+            *(f"seen_{camera}" for camera in cameras),
+            *(f"score_{camera}" for camera in cameras),
             *(f"{joint}_{axis}_m" for joint in JOINT_NAMES for axis in "xyz"),
             *(f"{angle}_deg" for angle in ANGLE_NAMES),
             *(f"{joint}_confidence" for joint in JOINT_NAMES),
@@ -264,9 +267,10 @@ def _csv_rows(poses: Arrays) -> Iterator[list[int | str]]:
         numbers = [poses[name][i] for name in names]
         yield [
             int(frame),
+            int(poses["person"][i]),
             *_cells(poses["time_s"][i], 4),
             str(poses["status"][i]),
-            str(poses["views"][i]),
+            *(int(seen) for seen in poses["seen"][i]),
             *(cell for part in numbers for cell in _cells(part, 4)),
         ]
 

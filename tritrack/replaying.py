@@ -4,6 +4,7 @@ import threading
 import time
 from collections import defaultdict, deque
 from collections.abc import Iterator, Sequence
+from itertools import chain
 from pathlib import Path
 from typing import Final, NamedTuple
 
@@ -60,6 +61,7 @@ def replay_run(folder: Path, out: Path | None, force: bool = False) -> Facts:
     facts = {"clip": recording.head.name, "bodies": len(done.bodies), "same": done.same}
     if out is not None:
         told = {**facts, "scale_source": done.scale_source, "warnings": [], **now.facts}
+        told["cameras"] = [*recording.head.cameras]
         write_run(out, done.bodies, recording.head.settings, told)
     return facts
 
@@ -88,17 +90,18 @@ def integrated(recording: Recording) -> Replayed:
 
 def instants(recording: Recording) -> Iterator[tuple[Body, Instant]]:
     """Each recorded body with the reports that it was made of, if none of these is lost."""
-    first, second = (_by_frame(reports) for reports in recording.reports)
+    each = [_by_frame(reports) for reports in recording.reports]
     late_s = {told.calibration: told.late_s for told in recording.cameras}
     tolerance_s = 0.5 * recording.head.period_s
     for body in recording.bodies:
         late = late_s.get(body.calibration, 0.0)
-        one = _near(first[body.made_of[0]], body, tolerance_s)
-        others = [set_back(report, late) for report in second[body.made_of[1]]]
-        other = _near(others, body, tolerance_s)
-        found = (-1 if one is None else one.frame, -1 if other is None else other.frame)
-        if found == body.made_of != (-1, -1):
-            yield body, Instant((one, other))
+        now = []
+        for by_frame, frame in zip(each, body.made_of, strict=False):
+            told = [set_back(report, late) for report in by_frame[frame]]
+            now.append(_near(told, body, tolerance_s))
+        found = tuple(-1 if report is None else report.frame for report in now)
+        if found == body.made_of and any(report is not None for report in now):
+            yield body, Instant(tuple(now))
 
 
 def _by_frame(reports: Sequence[Report]) -> defaultdict[int, list[Report]]:
@@ -148,7 +151,7 @@ def replay_on_bus(folder: Path, bus_settings: BusSettings, speed: float, console
 def say(recording: Recording, bus: Bus, speed: float) -> int:
     """Publish all messages at their pace, each rig before the bodies that it tells; how many."""
     rigs = deque(_rigs(recording))
-    moments: list[Moment] = [*recording.reports[0], *recording.reports[1]]
+    moments: list[Moment] = [*chain.from_iterable(recording.reports)]
     moments += [*recording.bodies, *recording.postures]
     moments.sort(key=lambda message: message.captured_s)  # stable: reports, body, posture
     begin_s, stop = time.monotonic(), threading.Event()

@@ -81,7 +81,7 @@ _LENGTHS: Final[dict[tuple[type[Message], str], tuple[int, ...]]] = {
     (Body, "extremities_px"): _VIEWS,
     (Body, "extremities_confidence"): (0, len(EXTREMITY_NAMES)),
     (Body, "moved"): _VIEWS,
-    **{(Body, name): _VIEWS[1:] for name in ("score", "facing", "made_of")},
+    **{(Body, name): _VIEWS[1:] for name in ("seen", "score", "facing", "made_of")},
     (Guide, "frames"): _VIEWS[1:],
 }
 

@@ -7,7 +7,7 @@ import msgspec
 from common.body.body import Bdp
 from common.rig.upright import Shift, Upright
 
-PROTOCOL: Final = 11
+PROTOCOL: Final = 12
 
 MOST_VIEWS: Final = 8
 """Cameras of a rig."""
@@ -236,6 +236,8 @@ class Body(Moment, frozen=True, kw_only=True):
     """The same in the picture of each camera."""
     extremities_confidence: tuple[float, ...] = ()
     """EXTREMITY_NAMES order, in [0, 1]; 0: not measured, it follows from the joints."""
+    seen: tuple[bool, ...] = (False, False)
+    """Whether each camera shows the person."""
     score: tuple[float, ...] = (0.0, 0.0)
     """S of the pose in the picture of each camera; 0 where it sees no person."""
     facing: tuple[Facing, ...] = ("facade", "flank")

@@ -130,7 +130,7 @@ class View(msgspec.Struct, frozen=True):
 
 
 class Clip(msgspec.Struct, frozen=True):
-    """One or two views of one room."""
+    """The views of one room."""
 
     name: str
     views: tuple[View, ...]
@@ -181,17 +181,37 @@ def set_back(clip: Clip, late_s: float) -> Clip:
     return msgspec.structs.replace(clip, views=(first, second))
 
 
+def clip_summary(clip: Clip) -> dict[str, Any]:
+    """Of what a run is, for its summary, as the clip says itself."""
+    return {
+        "clip": clip.name,
+        "cameras": [*camera_names(clip)],
+        "performer": clip.meta.performer,
+        "posture_meant": clip.meta.posture,
+    }
+
+
+def camera_names(clip: Clip) -> tuple[str, ...]:
+    """Names of the rig's cameras in their order: two at least, also where one is looked at."""
+    own = {view.number: view.name for view in clip.views}
+    return tuple(own.get(number, f"cam{number}") for number in _numbers(clip))
+
+
 def uprights_of(clip: Clip) -> Uprights:
-    """How the pictures of viewer 1 and viewer 2 come from their files'."""
+    """How each viewer's pictures come from its file's, in the order of the rig's cameras."""
     own = {view.number: view.upright for view in clip.views}
-    return own.get(1), own.get(2)
+    return tuple(own.get(number) for number in _numbers(clip))
 
 
-def both_cameras(clip: Clip) -> Rig | None:
-    """The clip's rig with a camera for each viewer; a viewer that is not there gets the other's."""
+def whole_rig(clip: Clip) -> Rig | None:
+    """The clip's rig with a camera for each number; one that is not looked at gets another's."""
     if clip.rig is None:
         return None
     own = {view.number: camera for view, camera in zip(clip.views, clip.rig.cameras, strict=True)}
-    any_camera = clip.rig.cameras[0]
-    cameras = (own.get(1, any_camera), own.get(2, any_camera))
+    cameras = tuple(own.get(number, clip.rig.cameras[0]) for number in _numbers(clip))
     return msgspec.structs.replace(clip.rig, cameras=cameras)
+
+
+def _numbers(clip: Clip) -> range:
+    """Of the rig's cameras, up to the last that is looked at."""
+    return range(1, max(2, *(view.number for view in clip.views)) + 1)

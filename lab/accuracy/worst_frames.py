@@ -12,7 +12,7 @@ from common.body.body import Vector
 from common.config.settings import Settings
 from common.npz_file import Arrays, Facts
 from common.rig.camera import project
-from common.video.clip_facts import View, both_cameras
+from common.video.clip_facts import View, whole_rig
 from common.video.clips import open_clip
 from common.video.pictures import Image
 from lab.accuracy.accuracy import INDEX, JOINTS, Compared
@@ -114,7 +114,7 @@ def _shown(
     one: WorstFrame, compared: Compared, truth: Arrays, settings: Settings, decoders: Decoders
 ) -> Image:
     clip = open_clip(msgspec.structs.replace(settings, size=SHOWN), decoders.of[1])
-    rig, row, parts = both_cameras(clip), int(compared.rows[one.place]), []
+    rig, row, parts = whole_rig(clip), int(compared.rows[one.place]), []
     for view in clip.views:
         row_of = truth.get(f"frames_cam{view.number}", np.arange(len(truth["present"])))
         picture, enlarged = _taken(view, int(np.abs(row_of - row).argmin()), decoders)

@@ -12,7 +12,7 @@ from common.bus.messages import Body, Picture, Report, ViewerNumber
 from common.config import config_file
 from common.method import Mode
 from common.rig.camera import Rig
-from common.video.clip_facts import both_cameras
+from common.video.clip_facts import whole_rig
 from common.video.reduction import jpeg_of
 from recognizer.__main__ import MOVING
 from runtime.offline.lockstep import Decoders, track_clip
@@ -50,7 +50,7 @@ def contact_strip(path: Path, mode: Mode | None, decoders: Decoders) -> bytes:
     moving = [now for now in instants if now[2].status in MOVING] or instants
     moving = moving[-settings.recognizer.window_frames :]
     chosen = [moving[i] for i in np.linspace(0, len(moving) - 1, SHOWN).round().astype(int)]
-    rig, numbers = both_cameras(tracked.clip), [view.number for view in tracked.clip.views]
+    rig, numbers = whole_rig(tracked.clip), [view.number for view in tracked.clip.views]
     rows = [np.hstack([_shown(now, number, rig) for now in chosen]) for number in numbers]
     _, png = cv2.imencode(".png", cv2.cvtColor(np.vstack(rows), cv2.COLOR_RGB2BGR))
     return bytes(png.tobytes())

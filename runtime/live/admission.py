@@ -7,7 +7,7 @@ from rich.console import Console
 
 from common.config.settings import Settings
 from common.method import METHODS
-from common.video.clip_facts import Clip, both_cameras
+from common.video.clip_facts import Clip, whole_rig
 from runtime.live.free_ports import own_session, refuse_held_ports, with_free_endpoint
 from runtime.store.recording import refuse_without_library
 
@@ -62,7 +62,7 @@ def opened(settings: Settings, name: str) -> Clip:
     clip = msgspec.structs.replace(
         clip,
         name=name or clip.name,
-        rig=both_cameras(clip),
+        rig=whole_rig(clip),
         body=measured_before(settings),
     )
     _refuse_what_would_fail(settings, clip)

@@ -4,7 +4,7 @@ import msgspec
 
 from common.config.settings import Settings
 from common.rig.rig_file import CalibrationError, load_rig
-from common.video.clip_facts import Clip, both_cameras
+from common.video.clip_facts import Clip, whole_rig
 from common.video.clip_sources import ClipError, companions_folder, footage_of
 from common.video.clips import find_calibration, open_clip
 from common.video.decoding import Decoder
@@ -46,4 +46,4 @@ def two_camera_clip(settings: Settings) -> Clip:
 
 
 def _with_both(clip: Clip) -> Clip:
-    return msgspec.structs.replace(clip, rig=both_cameras(clip))
+    return msgspec.structs.replace(clip, rig=whole_rig(clip))

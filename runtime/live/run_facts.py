@@ -4,7 +4,7 @@ from typing import Any
 
 import msgspec
 
-from common.video.clip_facts import Clip
+from common.video.clip_facts import Clip, clip_summary
 from runtime.live.launch import Heard
 from runtime.live.recorded import SoFar
 from runtime.live.screen import warnings_of
@@ -63,9 +63,7 @@ def note_unseen(heard: Heard) -> None:
 def facts_of_clip(clip: Clip) -> dict[str, Any]:
     """Of what the run is, and who performs what, as the clip says itself."""
     return {
-        "clip": clip.name,
-        "performer": clip.meta.performer,
-        "posture_meant": clip.meta.posture,
+        **clip_summary(clip),
         **run_of("live", [view.source for view in clip.views]).facts,
     }
 

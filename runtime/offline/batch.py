@@ -12,7 +12,7 @@ from common.config import config_file
 from common.config.part_settings import SettingsError
 from common.config.settings import Settings
 from common.method import Mode
-from common.video.clip_facts import Clip, both_cameras
+from common.video.clip_facts import Clip, camera_names, whole_rig
 from common.video.clip_sources import ClipError, footage_of, refuse_no_footage
 from common.video.pictures import DecoderDied, Undecodable
 from integrator.frame_numbers import frame_times
@@ -145,8 +145,9 @@ def head_of(
         settings=settings,
         period_s=clip.every / clip.views[0].fps,
         alone=len(clip.views) == 1,
-        rig=both_cameras(clip),
+        rig=whole_rig(clip),
         body=clip.body,
+        cameras=camera_names(clip),
         times=frame_times(clip),
         scale_source=scale_source,
         by_person=by_person,

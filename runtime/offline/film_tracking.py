@@ -14,7 +14,7 @@ from common.method import METHODS, Method
 from common.notes.notes import Notes
 from common.raster.silhouette_report import with_silhouette
 from common.rig.camera import PAPER_ROTATIONS, Camera
-from common.video.clip_facts import Clip, shortfall, unread_facts
+from common.video.clip_facts import Clip, clip_summary, shortfall, unread_facts
 from common.video.pictures import Reader
 from runtime.offline.film_passes import (
     CUTTING,
@@ -116,9 +116,7 @@ def follow_clip(
     posing_s = time.perf_counter() - seen + (left.spent_s if left else 0.0)
     odd = (background.odd, *first.odd, doubtful(bodies))
     facts = {
-        "clip": clip.name,
-        "performer": clip.meta.performer,
-        "posture_meant": clip.meta.posture,
+        **clip_summary(clip),
         **_times(len(bodies), silhouettes=first.spent_s, poses=posing_s),
         "scale_source": "assumed" if camera is None else "calibrated",
         **_camera_facts(lifted.camera if camera is None else None),

@@ -14,11 +14,12 @@ from common.config.settings import Settings
 from common.method import METHODS, Method
 from common.video.clip_facts import (
     Clip,
-    both_cameras,
+    clip_summary,
     set_back,
     shortfall,
     unread_facts,
     uprights_of,
+    whole_rig,
 )
 from common.video.clip_sources import ClipError
 from common.video.clips import open_clip
@@ -47,6 +48,7 @@ from runtime.offline.rig_check import (
     doubts,
     is_late,
     trust_facts,
+    unchecked,
 )
 from runtime.offline.rig_from_person import Looked, by_person, calibration_facts
 from runtime.steps.together import viewer_of
@@ -130,8 +132,7 @@ def track_clip(
     clip = open_clip(settings, decoders.of[1], views)
     method = method or METHODS[settings.mode]
     alone = len(clip.views) == 1
-    if method.stick_lifting and not alone:
-        raise ClipError(f"{clip.name}: the thesis's mode is for one camera: add --views 1")
+    _refuse_other_modes(clip, method)
     if alone and (method.stick_lifting or (method.proposals and clip.rig is None)):
         return _in_two_passes(clip, settings, method, decoders, course)
     with outside_sources(settings, clip.views) as sources:
@@ -145,6 +146,20 @@ def track_clip(
             followed = _followed(looked, job, began)
             clock = clock_seen(looked.clip, followed.witness)
         return _told(looked, job, followed, clock)
+
+
+def _refuse_other_modes(clip: Clip, method: Method) -> None:
+    """See that the method is one for so many cameras."""
+    several = len(clip.views)
+    if method.stick_lifting and several > 1:
+        raise ClipError(f"{clip.name}: the thesis's mode is for one camera: add --views 1")
+    if not method.proposals and several > 2:
+        raise ClipError(f"{clip.name}: the paper's mode is for two cameras: add --views 1,2")
+    if clip.rig is None and several > 2:
+        raise ClipError(
+            f"{clip.name}: {several} cameras need a calibration: make one (tritrack calibrate "
+            "board), or track two of them without: --views 1,2"
+        )
 
 
 def _as_left(looked: Looked, course: Course) -> Looked:
@@ -175,7 +190,7 @@ def _told(looked: Looked, job: _Job, followed: _Followed, clock: Clock) -> Track
     trust = trust_facts(clip, witness, clock, insisted=settings.trust_calibration)
     facts = _facts(ready, done, job.sources) | calibration_facts(looked) | trust
     facts |= moved_facts(done.bodies) | clock_facts(clip, looked.clock or clock, settings.offset_s)
-    facts["warnings"] += doubts(facts)
+    facts["warnings"] += [*doubts(facts), *unchecked(clip)]
     given = settings.offset_s is not None
     return Tracked(clip, done.bodies if given else doubted(done.bodies, clock), facts)
 
@@ -198,7 +213,7 @@ def _prepared(
 ) -> Prepared:
     """Viewers that know their backgrounds and an integrator that knows the rig."""
     clip, odd = looked.clip, [looked.warning] if looked.warning else []
-    rig, alone = both_cameras(clip), len(clip.views) == 1
+    rig, alone = whole_rig(clip), len(clip.views) == 1
     known = body_of(settings, lambda own: track_clip(own, decoders).bodies)
     reels = {view.number: Reel(decoders.of[view.number], due=view.frames) for view in clip.views}
     viewers: dict[ViewerNumber, track.State] = {}
@@ -226,9 +241,7 @@ def _facts(ready: Prepared, done: Performance, sources: Sources) -> dict[str, An
     followed_s = done.seconds["following"]
     seconds = {"preparation": ready.seconds, **done.seconds, "all": ready.seconds + followed_s}
     return {
-        "clip": clip.name,
-        "performer": clip.meta.performer,
-        "posture_meant": clip.meta.posture,
+        **clip_summary(clip),
         **({"acts": msgspec.to_builtins(acts)} if acts else {}),
         **unread_facts(endings),
         "seconds": {name: round(value, 4) for name, value in seconds.items()},

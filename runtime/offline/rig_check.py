@@ -23,17 +23,17 @@ class Seen(NamedTuple):
     """What was seen until now."""
 
     rows: dict[int, list[Row]]
-    """Of each view."""
+    """Of each view that was heard of."""
     moved: bool = False
     """A camera was moved."""
 
 
 class Witness:
-    """Keeps the landmarks of both views, instant by instant, while the cameras stand."""
+    """Keeps the landmarks of all views, instant by instant, while the cameras stand."""
 
     def __init__(self) -> None:
         """Nothing was seen yet."""
-        self.seen = Seen({1: [], 2: []})
+        self.seen = Seen({})
 
     def __call__(
         self, _: dict[ViewerNumber, CapturedFrame], reports: dict[int, Report], body: Body
@@ -43,18 +43,32 @@ class Witness:
         if self.seen.moved:
             return
         for number, report in reports.items():
-            if len(self.seen.rows[number]) < MOST_FRAMES:
-                self.seen.rows[number].append(row_of(report))
+            rows = self.seen.rows.setdefault(number, [])
+            if len(rows) < MOST_FRAMES:
+                rows.append(row_of(report))
 
-    def sighting(self, clip: Clip) -> Sighting:
-        """What both saw."""
-        first, second = (track_of_rows(self.seen.rows[number]) for number in (1, 2))
+    def sighting(self, clip: Clip) -> Sighting | None:
+        """What both views of a clip saw; None where it has one, or more."""
+        if len(clip.views) != 2:
+            return None
+        first, second = (track_of_rows(self.seen.rows.get(v.number, [])) for v in clip.views)
         return Sighting(first, second, clip.views[0].size)
 
 
 def clock_seen(clip: Clip, witness: Witness) -> Clock:
-    """The clock of view 2, by all that both views saw; not known where there is no second."""
-    return clock_of(witness.sighting(clip)) if len(clip.views) == 2 else UNSEEN
+    """The clock of view 2, by all that both views saw; not known of one, or of more than two."""
+    sighting = witness.sighting(clip)
+    return UNSEEN if sighting is None else clock_of(sighting)
+
+
+def unchecked(clip: Clip) -> list[str]:
+    """What to say of a clip of more cameras than clocks and calibration can be checked of."""
+    if len(clip.views) <= 2:
+        return []
+    return [
+        f"of {len(clip.views)} cameras it is not checked whether they run together, nor whether "
+        "the calibration is believable: track two of them for that (--views 1,2)"
+    ]
 
 
 def is_late(clip: Clip, clock: Clock) -> bool:
@@ -76,7 +90,7 @@ def trust_facts(clip: Clip, witness: Witness, clock: Clock, *, insisted: bool) -
     from calibration.gate.rig_trust import trust_of
 
     sighting = witness.sighting(clip)
-    if clip.rig is None or len(clip.views) < 2 or len(sighting.second.times_s) < 2:
+    if clip.rig is None or sighting is None or len(sighting.second.times_s) < 2:
         return {}
     period_s = clip.every / clip.views[0].fps
     trust = trust_of(clip.rig, sighting, period_s, clock)
@@ -109,7 +123,7 @@ def clock_facts(clip: Clip, clock: Clock, given_s: float | None) -> dict[str, An
         clock: Of view 2, by the times that its files tell and what the user says.
         given_s: How late the user says that it is.
     """
-    if len(clip.views) < 2:
+    if len(clip.views) != 2:
         return {}
     state = "given" if given_s is not None else clock.state
     rivals_s = sorted((clock.late_s, *clock.rivals_s)) if clock.rivals_s else []

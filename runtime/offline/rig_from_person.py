@@ -65,7 +65,7 @@ def sighting_of(
         is_moved = any(own[-1].shift is not None for own in reports.values() if own)
         if n + 1 == MOST_FRAMES or is_moved:
             break
-    first, second = (track_of(reports[number]) for number in (1, 2))
+    first, second = (track_of(reports[view.number]) for view in clip.views)
     return Sighting(first, second, clip.views[0].size)
 
 
@@ -85,7 +85,7 @@ def by_person(
 
     of_files = all(view.frames for view in clip.views)
     of_one_size = len({view.size for view in clip.views}) == 1
-    if clip.rig is not None or len(clip.views) < 2 or not (of_files and of_one_size):
+    if clip.rig is not None or len(clip.views) != 2 or not (of_files and of_one_size):
         return Looked(clip)
     if not (method.landmarks and method.proposals):
         return Looked(clip)

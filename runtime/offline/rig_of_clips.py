@@ -53,10 +53,10 @@ def calibrated_by_clips(paths: Sequence[Path], given: Given) -> FoundByClips:
         for path in paths:
             settings = config_file.load(path)
             clip = open_clip(settings)
-            if len(clip.views) < 2 or not all(view.frames for view in clip.views):
-                raise CalibrationError(f"{path} has not two recorded views: name clips of a rig")
+            if len(clip.views) != 2 or not all(view.frames for view in clip.views):
+                raise CalibrationError(f"{path} has not two recorded views: name clips of a pair")
             sizes |= {view.source_size for view in clip.views}
-            readers = {view.number: Reel(decoders[view.number - 1]) for view in clip.views}
+            readers = {v.number: Reel(one) for v, one in zip(clip.views, decoders, strict=True)}
             with outside_sources(settings, clip.views) as sources:
                 sightings.append(sighting_of(clip, settings, method, readers, sources))
             is_told = settings.offset_s is not None

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import msgspec
 
-from common.bus.messages import ViewerNumber
+from common.bus.messages import MOST_VIEWS, ViewerNumber
 from common.config.part_settings import SettingsError
 from common.config.picture_size import working_size
 from common.rig.absurd_rig import refuse_absurd
@@ -91,7 +91,7 @@ def _place(rig: Rig, number: ViewerNumber) -> int:
 def _uncalibrated(names: Sequence[str]) -> dict[str, ViewerNumber]:
     if len(names) > 1:
         raise SettingsError(
-            "two cameras need a calibration: make one (tritrack calibrate person), or track a "
+            "several cameras need a calibration: make one (tritrack calibrate person), or track a "
             "recorded clip (tritrack track), which can do without"
         )
     return dict.fromkeys(names or ("cam1",), 1)
@@ -102,8 +102,9 @@ def _calibrated(rig: Rig, wanted: Sequence[str], where: str) -> dict[str, Viewer
     missing = [name for name in wanted if name not in names]
     if missing:
         raise CalibrationError(f"{where} has no camera {missing[0]!r}; it has {', '.join(names)}")
-    if len(names) > 2:
+    if len(names) > MOST_VIEWS:
         raise CalibrationError(
-            f"{where} has {len(names)} cameras: keep two (tritrack calibrate import --camera)"
+            f"{where} has {len(names)} cameras: keep {MOST_VIEWS} at most (tritrack calibrate "
+            "import --camera)"
         )
     return {name: names.index(name) + 1 for name in wanted or names}

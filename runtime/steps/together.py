@@ -8,7 +8,7 @@ from common.bus.instant import instant_of
 from common.bus.messages import Body, Guide, Landmarks, Report, ViewerNumber
 from common.config.settings import Settings
 from common.method import Method
-from common.video.clip_facts import Clip, View, both_cameras
+from common.video.clip_facts import Clip, View, whole_rig
 from integrator import merge, merge_state
 from integrator.live_rig.live_calibration import LiveCalibration
 from viewer import track
@@ -39,7 +39,7 @@ def viewer_of(
         background: The picture without people.
         somebody: The person in the first frame, where all of the clip was looked at before.
     """
-    rig = both_cameras(clip)
+    rig = whole_rig(clip)
     camera = None if rig is None else rig.cameras[view.number - 1]
     setup = track.Setup(view.number, camera, settings, method, len(clip.views) == 1)
     return track.init(setup, background, somebody=somebody)

@@ -13,7 +13,7 @@ from common.config.picture_size import size_of
 from common.config.settings import Settings
 from common.method import METHODS, Mode
 from common.rig.camera import Rig
-from common.video.clip_facts import Clip, both_cameras, uprights_of
+from common.video.clip_facts import Clip, camera_names, uprights_of, whole_rig
 from common.video.pictures import Image
 from integrator import merge_state
 from integrator.frame_numbers import FrameTimes
@@ -41,6 +41,8 @@ class Bodies(msgspec.Struct, frozen=True):
     """The bodies of one instant, to be gone through."""
 
     people: tuple[Body, ...]
+    cameras: tuple[str, ...] = ()
+    """Names of the rig's cameras."""
 
     def __iter__(self) -> Iterator[Body]:
         """Body by body."""
@@ -56,7 +58,7 @@ class Bodies(msgspec.Struct, frozen=True):
 
     def to_numpy(self) -> dict[str, Any]:
         """As the arrays of `poses.npz`, a row a body: `joints_m` (n, 15, 3) and so on."""
-        return poses(self.people)
+        return poses(self.people, self.cameras)
 
 
 class _Going(NamedTuple):
@@ -77,7 +79,7 @@ class _Going(NamedTuple):
 
 
 class Tracker:
-    """Follows one person in the images of one camera, or of two that are calibrated.
+    """Follows one person in the images of one camera, or of two to eight that are calibrated.
 
     The steps are those of `tritrack track`: calibrated clips give the same bodies, bit for bit,
     where both are given pictures of the empty room. There is no other process, no bus, no file.
@@ -129,6 +131,8 @@ class Tracker:
         if not 0.0 < self._rate_hz <= LARGEST_RATE_HZ:
             raise SettingsError(f"rate_hz must be from 0 to {LARGEST_RATE_HZ:g}, got {rate_hz}")
         self._cameras = cameras_of(calibration, cameras)
+        if mode == "paper" and len(self._cameras.numbers) > 2:
+            raise SettingsError("the paper's mode is for two cameras: name them in cameras")
         numbers = self._cameras.numbers
         self._plates = None if background is None else plates_of(background, numbers)
         self._going: _Going | None = None
@@ -170,7 +174,7 @@ class Tracker:
             except BaseException:  # an interrupted instant is as if it had never come
                 going.calibration.looking = heard
                 raise
-        return Bodies((body,))
+        return Bodies((body,), camera_names(self._going.clip))
 
     def _refuse_too_few(self, given: Mapping[ViewerNumber, Image]) -> None:
         missing = [name for name, n in self._cameras.numbers.items() if n not in given]
@@ -189,7 +193,7 @@ class Tracker:
         alone, times = len(clip.views) == 1, FrameTimes(period_s, counts=True)
         start = Start(alone, None, times=times, uprights=uprights_of(clip))
         method = METHODS[settings.mode]
-        state = merge_state.init(both_cameras(clip), period_s, settings, method, start)
+        state = merge_state.init(whole_rig(clip), period_s, settings, method, start)
         naming = recognizer.init(recognizer.model_of(settings), settings.recognizer.window_frames)
         views, empty = clip.views, {} if self._plates is None else empty_of(self._plates, clip)
         viewers = {

@@ -10,9 +10,11 @@ from typing import Final, Generic, NamedTuple, TypeVar
 import msgspec
 
 from common.bus.control_messages import Cameras
-from common.bus.message_codec import MAX_BYTES, MalformedMessage, decode
+from common.bus.message_codec import MAX_BYTES, MalformedMessage
 from common.bus.messages import Body, Message, Posture
+from common.config.part_settings import SettingsError
 from runtime.store.journal import FRAME, HEAD, KINDS, MAGIC, Head, has_journal, parts_of
+from runtime.store.older_messages import read_head, read_message
 
 Kind = TypeVar("Kind", bound=Message)
 
@@ -48,7 +50,7 @@ class Journalled(Generic[Kind]):
         """In their order."""
         for mark, payload in _records(self._folder):
             if mark == _MARKS[self._kind]:
-                yield decode(payload, self._kind)
+                yield read_message(payload, self._kind)
 
 
 def read_journal(folder: Path) -> Told | None:
@@ -62,8 +64,8 @@ def read_journal(folder: Path) -> Told | None:
             return None
         next(iter(postures), None)
         cameras = [*Journalled(folder, Cameras)]
-        return Told(msgspec.msgpack.decode(head, type=Head), bodies, postures, cameras)
-    except (msgspec.DecodeError, MalformedMessage):
+        return Told(read_head(msgspec.msgpack.decode(head), Head), bodies, postures, cameras)
+    except (msgspec.DecodeError, MalformedMessage, SettingsError):
         return None
 
 

@@ -21,16 +21,20 @@ MAX_BYTES: Final = 1 << 31
 
 ROWS: Final[dict[str, tuple[str, tuple[int, ...]]]] = {
     "frame": ("iu", ()),
+    "person": ("iu", ()),
     "time_s": ("f", ()),
     "joints_m": ("f", (len(JOINT_NAMES), 3)),
-    "joints_px": ("f", (2, len(JOINT_NAMES), 2)),
     "angles_deg": ("f", (len(ANGLE_NAMES),)),
     "confidence": ("f", (len(JOINT_NAMES),)),
     "status": ("U", ()),
-    "views": ("U", ()),
-    "score": ("f", (2,)),
 }
 """The arrays of `poses.npz` that are read: kind of entries and shape of a row."""
+CAMERA_ROWS: Final[dict[str, tuple[str, tuple[int, ...]]]] = {
+    "joints_px": ("f", (len(JOINT_NAMES), 2)),
+    "seen": ("b", ()),
+    "score": ("f", ()),
+}
+"""The same of each camera: a row has one such entry a camera."""
 SINGLE_ROWS: Final[dict[str, tuple[str, tuple[int, ...]]]] = {
     "orientation": ("U", ()),
     "orientation_confidence": ("f", ()),
@@ -39,10 +43,13 @@ SINGLE_ROWS: Final[dict[str, tuple[str, tuple[int, ...]]]] = {
 """What a run of a single view has beside them."""
 EXTREMITY_ROWS: Final[dict[str, tuple[str, tuple[int, ...]]]] = {
     "extremities_m": ("f", (len(EXTREMITY_NAMES), 3)),
-    "extremities_px": ("f", (2, len(EXTREMITY_NAMES), 2)),
     "extremities_confidence": ("f", (len(EXTREMITY_NAMES),)),
 }
 """What the file has behind the 15 joints; runs that were written before it lack them."""
+EXTREMITY_CAMERA_ROWS: Final[dict[str, tuple[str, tuple[int, ...]]]] = {
+    "extremities_px": ("f", (len(EXTREMITY_NAMES), 2)),
+}
+"""The same of each camera."""
 CUT_SHORT: Final = "the run was cut short, or goes on: what it measured is read from its journal"
 
 
@@ -55,7 +62,8 @@ class PastRun(NamedTuple):
 
     folder: Path
     poses: Arrays
-    """Arrays by name: those of ROWS, EXTREMITY_ROWS where it has them, what else the file holds."""
+    """Arrays by name: those of ROWS and CAMERA_ROWS, of the extremities where it has them, what
+    else the file holds. `camera_names` are the C cameras that rows have entries of."""
     summary: dict[str, Any]
 
 
@@ -85,7 +93,7 @@ def open_run(folder: Path) -> PastRun:
     try:
         summary = json.loads((folder / "summary.json").read_text())
         _refuse_a_newer_version(folder, summary)
-        poses = parted(read_arrays(path, MAX_BYTES))
+        poses = _completed(parted(read_arrays(path, MAX_BYTES)))
     except PastRunError:
         raise
     except FileNotFoundError as error:
@@ -121,7 +129,7 @@ def _minor(told: str) -> tuple[int, ...]:
 def _how_to_track(folder: Path) -> str:
     from runtime.store.journal import has_journal
 
-    if any(folder.glob("cam[12].*")):
+    if any(folder.glob("cam[1-8].*")):
         return f"it is a clip; track it first: tritrack track {folder}"
     if has_journal(folder):
         return (
@@ -146,10 +154,24 @@ def _cut_short(folder: Path, told: "Told") -> PastRun:
     return PastRun(folder, poses(bodies), summary_of(bodies, told.head.settings, facts))
 
 
+def _completed(poses: Arrays) -> Arrays:
+    """The arrays with what 0.2 did not write: one person, two cameras, and which saw whom."""
+    if "camera_names" in poses or "views" not in poses:
+        return poses
+    from runtime.store.older_messages import seen_by
+
+    words = np.ravel(poses["views"])
+    seen = np.array([seen_by(str(word)) for word in words], np.bool_).reshape(-1, 2)
+    person = np.zeros(len(words), np.int64)
+    return {**poses, "person": person, "camera_names": np.array(("cam1", "cam2")), "seen": seen}
+
+
 def _refuse_other_arrays(path: Path, poses: dict[str, Any]) -> None:
     rows = len(poses["frame"]) if np.ndim(poses.get("frame", 0)) == 1 else 0
-    further = SINGLE_ROWS | EXTREMITY_ROWS
-    known = ROWS | {name: row for name, row in further.items() if name in poses}
+    cameras = len(np.ravel(poses.get("camera_names", ())))
+    further = SINGLE_ROWS | EXTREMITY_ROWS | _by_camera(EXTREMITY_CAMERA_ROWS, cameras)
+    due = ROWS | _by_camera(CAMERA_ROWS, cameras)
+    known = due | {name: row for name, row in further.items() if name in poses}
     for name, (kinds, shape) in known.items():
         array = np.asarray(poses.get(name))
         if array.shape != (rows, *shape) or array.dtype.kind not in kinds:
@@ -157,3 +179,9 @@ def _refuse_other_arrays(path: Path, poses: dict[str, Any]) -> None:
             raise PastRunError(f"{path}: {name} is {found}, not {(rows, *shape)}: track it again")
     if tuple(str(name) for name in np.ravel(poses.get("joint_names", ()))) != JOINT_NAMES:
         raise PastRunError(f"{path}: joint_names are not those of this version: track it again")
+
+
+def _by_camera(
+    rows: dict[str, tuple[str, tuple[int, ...]]], cameras: int
+) -> dict[str, tuple[str, tuple[int, ...]]]:
+    return {name: (kinds, (cameras, *shape)) for name, (kinds, shape) in rows.items()}

@@ -19,13 +19,17 @@ AT_ONCE: Final = 2_000
 Laid = Callable[[dict[str, Any]], dict[str, Any]]
 
 
-def poses(bodies: Iterable[Body]) -> dict[str, Any]:
+def poses(bodies: Iterable[Body], cameras: Sequence[str] = ()) -> dict[str, Any]:
     """The arrays of a run; a row without a pose is NaN.
 
     They are gone through twice, some thousand at once. What `poses.npz` holds of each joint,
     `on_disk` lays together: the 15, then the extremities.
+
+    Args:
+        bodies: Of the run.
+        cameras: Names of the rig's cameras; cam1, cam2 ... where they have none.
     """
-    told, coming = _told_by(bodies), iter(bodies)
+    told, coming = _told_by(bodies, cameras), iter(bodies)
     found = [_arrays(list(islice(coming, AT_ONCE)), told)]
     while len(found[-1]["frame"]) == AT_ONCE:
         found.append(_arrays(list(islice(coming, AT_ONCE)), told))
@@ -37,7 +41,10 @@ def poses(bodies: Iterable[Body]) -> dict[str, Any]:
 
 @contextmanager
 def mapped_poses(
-    bodies: Iterable[Body], folder: Path, laid: Laid = lambda arrays: arrays
+    bodies: Iterable[Body],
+    folder: Path,
+    laid: Laid = lambda arrays: arrays,
+    cameras: Sequence[str] = (),
 ) -> Iterator[dict[str, Any]]:
     """The same of however many bodies; of many the arrays are mapped from files, then removed.
 
@@ -45,8 +52,9 @@ def mapped_poses(
         bodies: Are gone through twice.
         folder: For the files.
         laid: Lays arrays together, `on_disk`.
+        cameras: As for `poses`.
     """
-    told, coming = _told_by(bodies), iter(bodies)
+    told, coming = _told_by(bodies, cameras), iter(bodies)
     arrays = laid(_arrays(list(islice(coming, AT_ONCE)), told))
     if len(arrays["frame"]) < AT_ONCE:
         yield arrays
@@ -74,18 +82,23 @@ class _Told(NamedTuple):
     """All that have joints."""
     liftings: bool
     """Any."""
+    cameras: tuple[str, ...]
+    """Names of the rig's."""
 
 
-def _told_by(bodies: Iterable[Body]) -> _Told:
+def _told_by(bodies: Iterable[Body], names: Sequence[str]) -> _Told:
     without = lifted = False
+    count = max(2, len(names))
     for body in bodies:
         without = without or bool(body.joints_m and not body.extremities_m)
         lifted = lifted or body.lifting is not None
-    return _Told(not without, lifted)
+        count = max(count, len(body.score), len(body.joints_px))
+    cameras = (*names, *(f"cam{n + 1}" for n in range(len(names), count)))
+    return _Told(not without, lifted, cameras)
 
 
 def _arrays(bodies: Sequence[Body], told: _Told) -> dict[str, Any]:
-    n = len(bodies)
+    n, cameras = len(bodies), len(told.cameras)
 
     def rows(values: Iterable[Any], shape: tuple[int, ...]) -> Any:
         empty = np.full(shape, np.nan)
@@ -95,11 +108,12 @@ def _arrays(bodies: Sequence[Body], told: _Told) -> dict[str, Any]:
     in_pose = list(ANGLES_IN_POSE)
     return {
         "frame": np.array([body.frame for body in bodies], np.int64),
+        "person": np.zeros(n, np.int64),
         "time_s": np.array([body.captured_s for body in bodies], np.float64),
         "joints_m": rows((body.joints_m for body in bodies), (len(JOINT_NAMES), 3)),
         "joint_names": np.array(JOINT_NAMES),
-        **(_extremities(bodies, rows) if told.extremities else {}),
-        "joints_px": rows((body.joints_px for body in bodies), (2, len(JOINT_NAMES), 2)),
+        **(_extremities(bodies, rows, cameras) if told.extremities else {}),
+        "joints_px": rows((body.joints_px for body in bodies), (cameras, len(JOINT_NAMES), 2)),
         "angles_deg": rows(
             ([body.pose[i] for i in in_pose] if body.pose else () for body in bodies),
             (len(ANGLE_NAMES),),
@@ -110,20 +124,31 @@ def _arrays(bodies: Sequence[Body], told: _Told) -> dict[str, Any]:
             [body.confidence or (0.0,) * len(JOINT_NAMES) for body in bodies], np.float64
         ).reshape(n, len(JOINT_NAMES)),
         "status": np.array([body.status for body in bodies], "U9"),
-        "views": np.array([body.views for body in bodies], "U4"),
-        "score": np.array([body.score for body in bodies], np.float64).reshape(n, 2),
-        "facing": np.array([body.facing for body in bodies], "U6").reshape(n, 2),
+        "camera_names": np.array(told.cameras),
+        **_by_camera(bodies, cameras),
         **(_liftings([body.lifting for body in bodies]) if told.liftings else {}),
     }
 
 
-def _extremities(bodies: Sequence[Body], rows: Callable[..., Any]) -> dict[str, Any]:
+def _by_camera(bodies: Sequence[Body], cameras: int) -> dict[str, Any]:
+    """What each camera tells of the body; of two also in one word."""
+    n = len(bodies)
+    words = {"views": np.array([body.views for body in bodies], "U4")} if cameras == 2 else {}
+    return {
+        **words,
+        "seen": np.array([body.seen for body in bodies], np.bool_).reshape(n, cameras),
+        "score": np.array([body.score for body in bodies], np.float64).reshape(n, cameras),
+        "facing": np.array([body.facing for body in bodies], "U6").reshape(n, cameras),
+    }
+
+
+def _extremities(bodies: Sequence[Body], rows: Callable[..., Any], cameras: int) -> dict[str, Any]:
     """Nose, heels, toes and knuckles."""
     count = len(EXTREMITY_NAMES)
     sure = (body.extremities_confidence or (0.0,) * count for body in bodies)
     return {
         "extremities_m": rows((body.extremities_m for body in bodies), (count, 3)),
-        "extremities_px": rows((body.extremities_px for body in bodies), (2, count, 2)),
+        "extremities_px": rows((body.extremities_px for body in bodies), (cameras, count, 2)),
         "extremities_confidence": np.array(list(sure), np.float64).reshape(-1, count),
     }
 

@@ -16,12 +16,22 @@ import msgspec
 from common.atomic_file import replacing
 from common.body.body import Bdp
 from common.bus.control_messages import Cameras
-from common.bus.message_codec import MalformedMessage, decode, encode
-from common.bus.messages import PROTOCOL, Body, Message, Moment, Posture, Report, ScaleSource
+from common.bus.message_codec import MalformedMessage, encode
+from common.bus.messages import (
+    MOST_VIEWS,
+    PROTOCOL,
+    Body,
+    Message,
+    Moment,
+    Posture,
+    Report,
+    ScaleSource,
+)
 from common.config.settings import Settings
 from common.rig.camera import Rig
 from integrator.frame_numbers import FrameTimes
 from runtime.store import foxglove_scene
+from runtime.store.older_messages import read_head, read_message
 from runtime.store.runs import RunError, unwritable, versions
 
 NAME: Final = "recording.mcap"
@@ -30,8 +40,7 @@ TORN: Final = ".recording.*.mcap"
 CHUNK_BYTES: Final = 1 << 17
 """So much is written at once, half a second to two of a run: more is not lost when it is killed."""
 KINDS: Final[dict[str, type[Message]]] = {
-    "/report/1": Report,
-    "/report/2": Report,
+    **{f"/report/{number}": Report for number in range(1, MOST_VIEWS + 1)},
     "/body": Body,
     "/posture": Posture,
     "/cameras": Cameras,
@@ -63,6 +72,8 @@ class Head(msgspec.Struct, frozen=True, kw_only=True):
     """As measured before the run; None: it was not."""
     times: FrameTimes | None = None
     """When camera 1 takes its frames; None where it is no part of the run."""
+    cameras: tuple[str, ...] = ()
+    """Names of the rig's cameras."""
     protocol: int = PROTOCOL
     versions: dict[str, str] = {}
 
@@ -71,8 +82,8 @@ class Recording(NamedTuple):
     """What a recording holds, each in the order in which it was said."""
 
     head: Head
-    reports: tuple[list[Report], list[Report]]
-    """Of viewer 1 and of viewer 2."""
+    reports: tuple[list[Report], ...]
+    """Of each viewer that the rig may have, in their order."""
     bodies: list[Body]
     postures: list[Posture]
     cameras: list[Cameras]
@@ -143,7 +154,7 @@ def read_recording(folder: Path) -> Recording:
         ) from error
     if not heads:
         raise RecordingError(f"{path} was damaged, or ended before it began: record again")
-    reports = (found["/report/1"], found["/report/2"])
+    reports = tuple(found[topic] for topic, kind in KINDS.items() if kind is Report)
     return Recording(heads[0], reports, found["/body"], found["/posture"], found["/cameras"])
 
 
@@ -160,9 +171,9 @@ def _said(reader: Any) -> Iterator[Head | Message]:
             case "Channel":
                 topics[record.id] = record.topic
             case "Metadata":
-                yield msgspec.json.decode(record.metadata["head"], type=Head)
+                yield read_head(msgspec.json.decode(record.metadata["head"]), Head)
             case "Message" if topics[record.channel_id] in KINDS:
-                yield decode(record.data, KINDS[topics[record.channel_id]])
+                yield read_message(record.data, KINDS[topics[record.channel_id]])
 
 
 def _keeper(writer: Any, file: IO[bytes]) -> Keep:

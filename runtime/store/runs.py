@@ -50,7 +50,8 @@ def write_run(
         folder: Made where it is not there.
         bodies: In the order of time; an instant that camera 1 missed (frame -1) gets no row.
         settings: As resolved for the run.
-        facts: What else the summary tells: seconds, scale_source, warnings ...
+        facts: What else the summary tells: cameras (their names), seconds, scale_source,
+            warnings ...
 
     Raises:
         RunError: When the folder or a file cannot be written: no space, no right.
@@ -59,7 +60,7 @@ def write_run(
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with (
-            mapped_poses(rows, folder, on_disk) as arrays,
+            mapped_poses(rows, folder, on_disk, facts.get("cameras", ())) as arrays,
             replacing(folder / "poses.npz") as path,
             path.open("wb") as file,
         ):

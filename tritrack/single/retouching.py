@@ -160,8 +160,8 @@ def fitted_by_single(run: PastRun) -> bool:
 def how_to_go_on(video: Path, run: PastRun) -> str:
     """What to do with the notes; they are of one camera's picture."""
     command = f"tritrack single {shlex.quote(str(video))}"
-    if "both" in run.poses["views"]:
-        return f"the run has two cameras, the notes are of camera 1 alone: to fit that, {command}"
+    if np.any(np.count_nonzero(run.poses["seen"], axis=1) > 1):
+        return f"the run has other cameras too, the notes are of camera 1: to fit that, {command}"
     return f"then fit the video again with these notes: {command}"
 
 
