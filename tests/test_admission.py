@@ -13,7 +13,7 @@ from common.config.settings import Settings
 from common.rig.camera import paper_rig
 from common.video.clip_facts import Clip, Meta, View
 from runtime.live import admission
-from runtime.live.admission import LiveRefused, admitted, opened
+from runtime.live.admission import LiveRefused, admitted, opened, refuse_a_third_camera
 
 RIG = paper_rig((160, 120), (200.0, 200.0), (4.0, 4.0))
 CAMERAS = Settings(cameras={"cam1": CameraSettings(device=0)})
@@ -64,3 +64,15 @@ def test_a_clip_gets_a_camera_for_each_viewer_and_the_lengths_that_are_known(
     assert model.last == (CAMERAS, meant)
     assert source.last == (CAMERAS, (view,))
     assert opened(CAMERAS, "monday").name == "monday"
+
+
+def test_a_third_camera_is_for_recorded_clips(monkeypatch: pytest.MonkeyPatch) -> None:
+    held = instead(monkeypatch, "runtime.live.admission.refuse_held_ports")
+    cameras = {name: CameraSettings(device=n) for n, name in enumerate(("cam1", "left", "door"))}
+    said = "two cameras at most, cam1 and cam2: there are cam1, left, door; .*tritrack track$"
+    with pytest.raises(LiveRefused, match=said):
+        admitted(Settings(cameras=cameras), False, Console(quiet=True))
+    with pytest.raises(LiveRefused, match="there are cam1, cam3"):
+        refuse_a_third_camera(Settings(cameras={"cam1": cameras["cam1"], "cam3": cameras["left"]}))
+    refuse_a_third_camera(Settings(cameras={"cam1": cameras["cam1"], "left": cameras["left"]}))
+    assert not held.given

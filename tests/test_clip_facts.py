@@ -9,6 +9,8 @@ from common.video.clip_facts import (
     Clip,
     Meta,
     View,
+    camera_names,
+    clip_summary,
     set_back,
     shortfall,
     unread,
@@ -107,3 +109,26 @@ def test_a_viewer_that_is_not_there_gets_the_others_camera() -> None:
         assert rig is not None
         assert rig.cameras == due
     assert whole_rig(clip_of(FIRST, SECOND)) is None
+
+
+def test_a_clip_has_a_camera_for_each_number_up_to_its_last() -> None:
+    """By hand: cameras 1 and 3 of a rig; the second, which is not looked at, gets the first's."""
+    third = View(3, "c.avi", (1920, 1080), (160, 120), 10.0, 50, name="door", upright=LYING)
+    clip = clip_of(FIRST, third, rig_of=(1, 2))
+    rig = whole_rig(clip)
+    assert rig is not None
+    assert rig.cameras == (RIG.cameras[0], RIG.cameras[0], RIG.cameras[1])
+    assert camera_names(clip) == ("cam1", "cam2", "door")
+    assert uprights_of(clip) == (None, None, LYING)
+    assert camera_names(clip_of(View(2, 0, (8, 6), (8, 6), 15.0, 0))) == ("cam1", "cam2")
+
+
+def test_a_summary_tells_the_clip_and_its_cameras() -> None:
+    meta = Meta(performer="ann", posture="squat")
+    told = clip_summary(msgspec.structs.replace(clip_of(FIRST), meta=meta))
+    assert told == {
+        "clip": "walk",
+        "cameras": ["cam1", "cam2"],
+        "performer": "ann",
+        "posture_meant": "squat",
+    }

@@ -24,6 +24,7 @@ from common.video.clip_facts import Act, Clip, Meta, View
 from common.video.clip_sources import ClipError
 from common.video.pictures import Ending
 from integrator import diagnostics, merge_state
+from lab.accuracy.accuracy import compare
 from runtime.offline import lockstep
 from runtime.offline.batch import Asked, track_all
 from runtime.offline.lockstep import Decoders, track_clip
@@ -31,6 +32,7 @@ from runtime.offline.performance import Performance, Prepared, Watch
 from runtime.offline.rig_check import Witness
 from runtime.offline.rig_from_person import Looked
 from runtime.overrides import overridden
+from runtime.store.past_run import open_run
 from runtime.store.pose_arrays import poses
 from runtime.store.runs import NOBODY_SEEN
 from runtime.unfinished.work import Course, InMemory
@@ -380,3 +382,74 @@ def test_the_thesis_refuses_two_views_and_one_camera_is_followed_in_two_passes(
     clips[1] = calibrated
     track_clip(Settings(mode="thesis"), decoders)
     assert len(passes) == 4, "whatever it knows of its camera"
+
+
+@pytest.fixture(scope="module")
+def three(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A clip of three cameras."""
+    wanted = ClipSet("postures", seed=61_001, postures=("squat",), cameras=3)
+    return write_set(tmp_path_factory.mktemp("three"), wanted, (160, 120))[0]
+
+
+@pytest.mark.slow
+def test_a_clip_of_three_cameras_is_tracked_by_all_of_them(three: Path, tmp_path: Path) -> None:
+    done = track_all([three], tmp_path, Asked(), Console(quiet=True))
+    facts = done["clips"][three.name]
+    assert facts["cameras"] == ["cam1", "cam2", "cam3"]
+    assert "of 3 cameras it is not checked" in facts["warnings"][-1]
+    assert {"clock", "trust"} & {*facts} == set()
+    run = open_run(tmp_path / three.name).poses
+    truth = np.load(three / "truth.npz")
+    both = compare(run, dict(truth))
+    assert (both.ghosts, len(both.frames)) == (0, both.due)
+    assert both.off_mm.mean() < 30.0
+    for n, name in enumerate(run["camera_names"]):
+        at = [*run["joint_names"]].index("neck")
+        true_px = truth[f"joints2d_{name}"][both.rows, [*truth["joint_names"]].index("neck")]
+        off_px = np.linalg.norm(run["joints_px"][both.frames, n, at] - true_px, axis=1)
+        assert off_px.mean() < 2.0
+    assert run["seen"][both.frames].all()
+
+
+@pytest.mark.slow
+def test_two_of_three_cameras_give_what_a_clip_of_these_two_gives(
+    three: Path, tmp_path: Path
+) -> None:
+    """Bit for bit, though the rig has a place for the one between."""
+    pair = tmp_path / "pair"
+    pair.mkdir()
+    for name, own in (("cam1", "cam1"), ("cam3", "cam2")):
+        os.link(three / f"{name}.avi", pair / f"{own}.avi")
+    rig = json.loads((three.parent / "calibration.json").read_text())
+    del rig["cameras"][1]
+    rig["cameras"][1]["name"] = "cam2"
+    (pair / "calibration.json").write_text(json.dumps(rig))
+    with Decoders() as decoders:
+        some = poses(track_clip(Settings(clip=str(three)), decoders, (1, 3)).bodies)
+        alone = poses(track_clip(Settings(clip=str(pair)), decoders).bodies)
+    for name in ("frame", "time_s", "joints_m", "angles_deg", "confidence", "status"):
+        assert some[name].tobytes() == alone[name].tobytes()
+    assert np.array_equal(some["joints_px"][:, [0, 2]], alone["joints_px"], equal_nan=True)
+    assert (some["camera_names"].tolist(), alone["seen"].any()) == (["cam1", "cam2", "cam3"], True)
+
+
+@pytest.mark.parametrize(
+    ("mode", "calibrated", "said"),
+    [
+        ("thesis", True, "three: the thesis's mode is for one camera: add --views 1"),
+        ("paper", True, "three: the paper's mode is for two cameras: add --views 1,2"),
+        ("default", False, "three: 3 cameras need a calibration: make one .*--views 1,2"),
+        ("default", True, ""),
+    ],
+)
+def test_three_cameras_are_for_the_default_mode_and_a_calibration(
+    mode: Any, calibrated: bool, said: str
+) -> None:
+    third = View(3, "c.avi", (320, 240), (160, 120), 15.0, 60)
+    rig = msgspec.structs.replace(RIG, cameras=(*RIG.cameras, RIG.cameras[0]))
+    clip = Clip("three", (*VIEWS, third), 1, rig if calibrated else None, Meta())
+    if said:
+        with pytest.raises(ClipError, match=f"^{said}"):
+            lockstep._refuse_other_modes(clip, METHODS[mode])
+    else:
+        lockstep._refuse_other_modes(clip, METHODS[mode])

@@ -8,9 +8,11 @@ import typer
 from common.atomic_file import FileRefused
 from tritrack.commands.options import (
     fov_given,
+    numbers_given,
     size_given,
     square_given,
     stature_given,
+    views_given,
     writable,
     writable_file,
 )
@@ -69,3 +71,32 @@ def test_a_number_out_of_bounds_is_told_with_its_unit_and_a_hundredth_is_asked_f
     assert [check(value) for value in inside] == [*inside]
     with pytest.raises(typer.BadParameter, match=said):
         check(outside)
+
+
+@pytest.mark.parametrize(
+    ("text", "numbers"),
+    [("1", (1,)), ("12", (1, 2)), ("1,3", (1, 3)), ("8, 2", (2, 8)), ("321", (1, 2, 3))],
+)
+def test_cameras_are_named_by_numbers_with_commas_or_without(
+    text: str, numbers: tuple[int, ...]
+) -> None:
+    assert numbers_given(text) == numbers
+    assert views_given(text) == text
+    assert views_given(None) is None
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("", "numbers with commas between: 2 or 1,3; got "),
+        ("left", "numbers with commas between: 2 or 1,3; got left"),
+        ("1,", "numbers with commas between"),
+        ("0", "cameras have the numbers 1 to 8, got 0"),
+        ("1,9", "cameras have the numbers 1 to 8, got 1,9"),
+        ("1,12", "cameras have the numbers 1 to 8, got 1,12"),
+        ("11", "each camera is named once, got 11"),
+    ],
+)
+def test_what_names_no_cameras_is_refused(text: str, said: str) -> None:
+    with pytest.raises(typer.BadParameter, match=said):
+        views_given(text)

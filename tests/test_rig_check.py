@@ -21,6 +21,7 @@ from runtime.offline.rig_check import (
     doubts,
     is_late,
     trust_facts,
+    unchecked,
 )
 
 TRUST: dict[str, Any] = {
@@ -250,3 +251,29 @@ def test_times_in_the_summary_are_rounded_to_what_is_known_of_them() -> None:
     assert str(facts["clock"]["may_be_s"][0]) == "0.0", "not -0.0"
     unknown = clock_facts(two_views(), UNSEEN, None)["clock"]
     assert (unknown["state"], unknown["may_be_on_time"]) == ("unknown", True)
+
+
+def test_of_three_cameras_what_two_tell_is_left_out_and_that_is_said() -> None:
+    third = View(3, "cam3.avi", (160, 120), (160, 120), 15.0, 60)
+    pair = two_views()
+    three = msgspec.structs.replace(pair, views=(*pair.views, third))
+    witness = Witness()
+    witness({}, {n: seen_at(n, 0.0) for n in (1, 2, 3)}, body_with())
+    assert witness.sighting(three) is None
+    assert clock_seen(three, witness) == UNSEEN
+    assert trust_facts(three, witness, UNSEEN, insisted=False) == {}
+    assert clock_facts(three, UNSEEN, None) == {}
+    (said,) = unchecked(three)
+    assert said.startswith("of 3 cameras it is not checked")
+    assert unchecked(pair) == []
+
+
+def test_two_of_several_cameras_are_held_against_each_other_whatever_their_numbers() -> None:
+    first, _ = two_views().views
+    third = View(3, "cam3.avi", (160, 120), (160, 120), 15.0, 60)
+    witness = Witness()
+    witness({}, {1: seen_at(1, 0.1), 3: seen_at(3, 0.3)}, body_with())
+    clip = msgspec.structs.replace(two_views(), views=(first, third))
+    sighting = witness.sighting(clip)
+    assert sighting is not None
+    assert (sighting.first.times_s.tolist(), sighting.second.times_s.tolist()) == ([0.1], [0.3])

@@ -17,6 +17,7 @@ from common.config.settings import Settings
 from common.rig.rig_file import CalibrationError, load_rig
 from common.video.pictures import Image
 from runtime.offline.lockstep import Decoders, track_clip
+from synth.write import ClipSet, write_set
 from tritrack import Body, Tracker
 
 EMPTY = np.full((120, 160, 3), 90, np.uint8)
@@ -38,11 +39,11 @@ def films(clip: Path) -> list[list[Image]]:
 
 def tracked(clip: Path, films: list[list[Image]], folder: Path, views: Any) -> list[Body]:
     """By the command, with the first pictures as those of the empty room."""
-    plates = [str(folder / f"empty{number}.png") for number in (1, 2)]
+    plates = [str(folder / f"empty{n + 1}.png") for n in range(len(films))]
     for plate, film in zip(plates, films, strict=True):
         cv2.imwrite(plate, film[0])
-    first, second = (CameraSettings(background=plate) for plate in plates)
-    settings = Settings(clip=str(clip), cameras={"cam1": first, "cam2": second})
+    cameras = {f"cam{n + 1}": CameraSettings(background=one) for n, one in enumerate(plates)}
+    settings = Settings(clip=str(clip), cameras=cameras)
     with Decoders() as decoders:
         return list(track_clip(settings, decoders, views).bodies)
 
@@ -76,6 +77,24 @@ def test_a_loop_gives_bit_for_bit_the_bodies_of_a_tracked_clip(
     assert len(got) == 69
     if len(views) == 2:
         assert "raise_right_lateral" in names
+
+
+@pytest.mark.slow
+def test_a_loop_over_three_cameras_gives_the_bodies_of_a_tracked_clip_of_three(
+    tmp_path: Path,
+) -> None:
+    wanted = ClipSet("postures", seed=61_002, postures=("squat",), cameras=3)
+    clip = write_set(tmp_path, wanted, (160, 120))[0]
+    films = [list(pictures(clip / f"cam{number}.avi")) for number in (1, 2, 3)]
+    tracker = Tracker(
+        tmp_path / "calibration.json", size="160x120", background=[film[0] for film in films]
+    )
+    assert tracker.cameras == ("cam1", "cam2", "cam3")
+    instants = [tracker.step(list(images)) for images in zip(*films, strict=True)]
+    assert [bodies[0] for bodies in instants] == tracked(clip, films, tmp_path, None)
+    arrays = instants[-1].to_numpy()
+    assert arrays["camera_names"].tolist() == ["cam1", "cam2", "cam3"]
+    assert arrays["joints_px"].shape == (1, 3, 15, 2)
 
 
 def test_without_pictures_of_the_empty_room_the_first_half_second_is_that(
