@@ -3,7 +3,8 @@
     .venv/bin/python benchmarks/same_runs.py BEFORE AFTER CLIP... [--size 160x120 320x240]
 
 Each clip is tracked by both checkouts, with this Python and its libraries, in every way below.
-What only one of them writes, and what differs, is named; the exit code is then 1.
+What differs, and what only the first writes, is named; the exit code is then 1. What only the
+second writes is new, and no difference.
 """
 
 import argparse
@@ -51,9 +52,9 @@ def differences(before: Path, after: Path) -> Iterator[str]:
         np.load(before / "poses.npz", allow_pickle=False) as first,
         np.load(after / "poses.npz", allow_pickle=False) as second,
     ):
-        for name in sorted({*first.files, *second.files}):
-            if name not in first.files or name not in second.files:
-                yield f"{name} is only in the {'first' if name in first.files else 'second'}"
+        for name in sorted(first.files):
+            if name not in second.files:
+                yield f"{name} is only in the first"
             elif (first[name].dtype, first[name].tobytes()) != (
                 second[name].dtype,
                 second[name].tobytes(),
