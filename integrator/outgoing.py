@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,7 @@ from common.body.kinematics import joints
 from common.body.proportions import body_vector, stature
 from common.bus.instant import Instant, Seen, two_views
 from common.bus.messages import Agreement, Body, Guide, Pixel, Point, Report, Status, Views
+from common.npz_file import Facts
 from common.rig.camera import project
 from common.rig.upright_camera import as_filed
 from integrator.belief import is_believed
@@ -118,7 +119,7 @@ def _places_m(state: State, pose: Vector) -> NDArray[np.float64]:
     return np.asarray(joints(body_vector(state.opening.bdp), pose))
 
 
-def _extremities(state: State, seen: Seen, places_m: Vector, believed: float) -> dict[str, Any]:
+def _extremities(state: State, seen: Seen, places_m: Vector, believed: float) -> Facts:
     """Nose, heels, toes and knuckles; how sure they are is 0 where the rule alone places them."""
     assert state.rig is not None
     assert state.opening.bdp is not None
@@ -247,7 +248,7 @@ def no_detection(state: State, instant: Instant) -> tuple[Body, Guide]:
     return body, guide
 
 
-def _moment(state: State, instant: Instant) -> dict[str, Any]:
+def _moment(state: State, instant: Instant) -> Facts:
     """Which frame is spoken of, and when it was taken."""
     newest = instant.newest
     return {"frame": state.number, "captured_s": newest.captured_s, "clock_s": newest.clock_s}

@@ -4,8 +4,9 @@ import errno
 import tempfile
 import traceback
 from collections.abc import Mapping
-from typing import Any, Final
+from typing import Final
 
+from common.npz_file import Facts
 from common.packages import PACKAGES
 from runtime.terminal import counted
 
@@ -49,7 +50,7 @@ def code_of(error: Exception) -> int:
     return FAULTY if isinstance(error, Fault) or not _is_for_the_user(error) else MENDABLE
 
 
-def refuse_unfollowed(clips: Mapping[str, Mapping[str, Any]]) -> None:
+def refuse_unfollowed(clips: Mapping[str, Facts]) -> None:
     """End a run with a code of its own where a clip's bodies are mostly not believed.
 
     Raises:
@@ -69,7 +70,7 @@ def refuse_unfollowed(clips: Mapping[str, Mapping[str, Any]]) -> None:
         )
 
 
-def _refuse_unread(clips: Mapping[str, Mapping[str, Any]]) -> None:
+def _refuse_unread(clips: Mapping[str, Facts]) -> None:
     lost = {
         path: read for facts in clips.values() for path, read in facts.get("unread", {}).items()
     }

@@ -2,9 +2,10 @@
 
 from collections.abc import Iterable
 from functools import reduce
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from common.bus.messages import Body
+from common.npz_file import Facts
 
 
 class Move(NamedTuple):
@@ -34,7 +35,7 @@ def step(moves: Moves, body: Body) -> Moves:
     return (*told, *(Move(n, body.captured_s) for n in body.moved if n not in waiting))
 
 
-def facts_of_moves(moves: Moves) -> dict[str, Any]:
+def facts_of_moves(moves: Moves) -> Facts:
     """Which cameras were moved and when, and when the person had confirmed their new place.
 
     `moved_cameras` is missing where none was.
@@ -42,7 +43,7 @@ def facts_of_moves(moves: Moves) -> dict[str, Any]:
     return {"moved_cameras": [move._asdict() for move in moves]} if moves else {}
 
 
-def moved_facts(bodies: Iterable[Body]) -> dict[str, Any]:
+def moved_facts(bodies: Iterable[Body]) -> Facts:
     """The same of all bodies of a run."""
     start: Moves = ()
     return facts_of_moves(reduce(step, bodies, start))

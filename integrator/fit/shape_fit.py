@@ -1,11 +1,12 @@
 """A body fitted to the person's silhouettes as they move: widths and arms."""
 
-from typing import Any, Final
+from typing import Final
 
 import msgspec
 import numpy as np
+from numpy.typing import NDArray
 
-from common.body.body import LIMBS, Bdp, Vector
+from common.body.body import LIMBS, Bdp, Floats, Vector
 from common.body.kinematics import ALL_LIMBS
 from common.body.proportions import (
     ARMS,
@@ -18,6 +19,7 @@ from common.body.proportions import (
 )
 from common.bus.instant import Seen
 from common.compiled import compiled
+from common.raster.bits import Bits
 from common.raster.kernel import match
 from common.rig.camera import Rig
 from integrator.fit.silhouette_pair import silhouettes_of
@@ -107,7 +109,9 @@ def fitted(bdp: Bdp, rig: Rig, samples: tuple[Sample, ...]) -> Bdp:
 
 
 @compiled
-def fit(body: Any, poses: Any, views: Any, seen: Any, seen_px: Any, width: int) -> float:
+def fit(
+    body: Vector, poses: Floats, views: Floats, seen: Bits, seen_px: NDArray[np.int64], width: int
+) -> float:
     """Sum of S over all samples and views.
 
     Args:
@@ -125,7 +129,9 @@ def fit(body: Any, poses: Any, views: Any, seen: Any, seen_px: Any, width: int) 
     return total
 
 
-def _fit_inputs(rig: Rig, samples: tuple[Sample, ...]) -> tuple[Any, Any, Any, Any, int]:
+def _fit_inputs(
+    rig: Rig, samples: tuple[Sample, ...]
+) -> tuple[Floats, Floats, Bits, NDArray[np.int64], int]:
     """Poses, views, silhouettes, their areas and their width, as `fit` wants them."""
     each = [silhouettes_of(rig, sample.seen) for sample in samples]
     return (

@@ -1,11 +1,11 @@
 """Both views' silhouettes of one instant, and how well poses fit both: S1 S2."""
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from common.body.body import Vector
+from common.body.body import Floats, Vector
 from common.body.kinematics import ALL_LIMBS
 from common.bus.instant import Seen
 from common.bus.messages import Report
@@ -61,8 +61,14 @@ def poorest(pose: Vector, body: Vector, rig: Rig, seen: Seen) -> float:
 
 @compiled
 def products(
-    body: Any, poses: Any, limbs: int, views: Any, seen: Any, seen_px: Any, width: int
-) -> Any:
+    body: Vector,
+    poses: Floats,
+    limbs: int,
+    views: Floats,
+    seen: Bits,
+    seen_px: NDArray[np.int64],
+    width: int,
+) -> Floats:
     """The product of S over the views, of each pose, (n,).
 
     Args:

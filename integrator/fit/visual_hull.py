@@ -4,12 +4,13 @@ A place that both views show belongs to their common hull (Laurentini 1994); a p
 of it, and the largest and tallest. Shadows, glare and moved furniture are others, or none.
 """
 
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from common.body.body import Vector
 from common.bus.instant import TwoViews
 from common.compiled import compiled
 from common.raster.kernel import NEAREST_M, seen_at, view_of
@@ -93,7 +94,7 @@ def _median_px(mask: Mask) -> tuple[float, float]:
 
 
 @compiled
-def _carve(full: Any, corner_m: Any, view: Any, mask: Any) -> None:
+def _carve(full: NDArray[np.int8], corner_m: Vector, view: Vector, mask: Mask) -> None:
     """Count the views that see each cell covered; -1 where one sees the room there.
 
     What one view covers and the other has outside its picture may be an arm that reaches out.
@@ -112,7 +113,7 @@ def _carve(full: Any, corner_m: Any, view: Any, mask: Any) -> None:
                     full[i, j, k] = full[i, j, k] + 1 if mask[int(v), int(u)] else -1
 
 
-def _largest(full: Any) -> Any:
+def _largest(full: NDArray[np.int8]) -> NDArray[np.int64]:
     """Cells, (n, 3), of the piece that both views see with the most volume times height.
 
     And of what one view sees next to it, an arm that reaches out of the other's picture.
@@ -131,7 +132,7 @@ def _largest(full: Any) -> Any:
     return low + _cells(ndimage.binary_dilation(piece, iterations=REACH_CELLS, mask=near == 1))
 
 
-def _cells(where: Any) -> Any:
+def _cells(where: NDArray[np.bool_]) -> NDArray[np.int64]:
     """The cells, (n, 3), where something holds; np.argwhere takes ten times as long."""
     return np.stack(np.unravel_index(np.flatnonzero(where), where.shape), axis=1)
 

@@ -1,11 +1,12 @@
 """Where a joint most probably is, of what the outlines propose and what each view shows."""
 
 import math
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from common.body.body import Floats, Vector
 from common.compiled import compiled
 
 
@@ -52,17 +53,17 @@ NONE, BOTH = -1, 2
 class Evidence(NamedTuple):
     """What is said of one joint."""
 
-    proposed_m: Any
+    proposed_m: Vector
     """(3,)"""
     inlier_probability: float
     """How probably the proposed joint is right."""
-    centres_m: Any
+    centres_m: Floats
     """(V, 3) the cameras."""
-    directions: Any
+    directions: Floats
     """(V, BOTH, 3) of its rays: of each view where it shows the joint, and where else it may."""
-    inliers: Any
+    inliers: Floats
     """(V, BOTH) how probably each landmark is right; 0: there is none."""
-    spreads_m: Any
+    spreads_m: Vector
     """(1 + V,) of the proposed joint and of each view's landmark, where they are right."""
     roughly_m: float
     """Of the proposed joint, where it is roughly right."""
@@ -72,7 +73,7 @@ class Evidence(NamedTuple):
 
 
 @compiled
-def most_probable(told: Any, place_m: Any, precision: Any) -> float:
+def most_probable(told: Evidence, place_m: Vector, precision: Vector) -> float:
     """The log probability of the place of one joint where it is highest.
 
     From where each witness alone would have it, and from where the rays of two views meet, rounds
@@ -102,7 +103,7 @@ def most_probable(told: Any, place_m: Any, precision: Any) -> float:
 
 
 @compiled
-def _next(taken: Any) -> bool:
+def _next(taken: NDArray[np.int64]) -> bool:
     """The next choice of rays, (V,) of NONE or a ray: at most two views give one; whether there
     is another. The last view's changes first."""
     while True:
@@ -118,7 +119,7 @@ def _next(taken: Any) -> bool:
 
 
 @compiled
-def _start(told: Any, taken: Any, here: Any) -> bool:
+def _start(told: Evidence, taken: NDArray[np.int64], here: Vector) -> bool:
     """Where to climb from, by the rays that are taken; whether there is such a place."""
     here[:] = told.proposed_m
     one = other = NONE
@@ -140,7 +141,7 @@ def _start(told: Any, taken: Any, here: Any) -> bool:
 
 
 @compiled
-def _drop(centre_m: Any, direction: Any, here: Any) -> None:
+def _drop(centre_m: Vector, direction: Vector, here: Vector) -> None:
     """Move a place to where a ray is nearest to it."""
     along = 0.0
     for i in range(3):
@@ -150,7 +151,7 @@ def _drop(centre_m: Any, direction: Any, here: Any) -> None:
 
 
 @compiled
-def _meet(centre_m: Any, one: Any, other_m: Any, two: Any, here: Any) -> bool:
+def _meet(centre_m: Vector, one: Vector, other_m: Vector, two: Vector, here: Vector) -> bool:
     """The middle between two rays where they are nearest; whether there is one."""
     cosine = first = second = 0.0
     for i in range(3):
@@ -169,7 +170,7 @@ def _meet(centre_m: Any, one: Any, other_m: Any, two: Any, here: Any) -> bool:
 
 
 @compiled
-def _weigh(told: Any, here: Any, normal: Any, right: Any) -> float:
+def _weigh(told: Evidence, here: Vector, normal: Vector, right: Vector) -> float:
     """The log probability of a place, and the normal equations by which it is bettered."""
     square = 0.0
     for i in range(3):
@@ -192,7 +193,7 @@ def _weigh(told: Any, here: Any, normal: Any, right: Any) -> float:
 
 
 @compiled
-def _look(told: Any, view: int, here: Any, normal: Any, right: Any) -> float:
+def _look(told: Evidence, view: int, here: Vector, normal: Vector, right: Vector) -> float:
     """The log probability by what one view shows; the normal equations get its share of them.
 
     It shows the joint at its first place or at its second: whichever is nearer pulls.
@@ -218,7 +219,7 @@ def _look(told: Any, view: int, here: Any, normal: Any, right: Any) -> float:
 
 
 @compiled
-def _beside(centre_m: Any, along: Any, here: Any) -> float:
+def _beside(centre_m: Vector, along: Vector, here: Vector) -> float:
     """How far a place is beside a ray, squared."""
     x, y, z = here[0] - centre_m[0], here[1] - centre_m[1], here[2] - centre_m[2]
     deep = x * along[0] + y * along[1] + z * along[2]
@@ -226,7 +227,7 @@ def _beside(centre_m: Any, along: Any, here: Any) -> float:
 
 
 @compiled
-def _pull(centre_m: Any, along: Any, weight: float, normal: Any, right: Any) -> None:
+def _pull(centre_m: Vector, along: Vector, weight: float, normal: Vector, right: Vector) -> None:
     """What a ray adds to the normal equations."""
     at = centre_m[0] * along[0] + centre_m[1] * along[1] + centre_m[2] * along[2]
     k = 0
@@ -244,14 +245,14 @@ def _bell(square: float, spread_m: float, often: float, axes: int) -> float:
 
 
 @compiled
-def _anywhere(roughly_m: float, unlikely: float, often: float, kind: Any, axes: int) -> float:
+def _anywhere(roughly_m: float, unlikely: float, often: float, kind: Spread, axes: int) -> float:
     """How probably somebody who is neither right nor, so often, roughly right says so."""
     beyond = unlikely * (1.0 - often) / (kind.far * roughly_m) ** axes
     return beyond * math.exp(-OUTLIER_PENALTY * often / kind.often) + 1e-30
 
 
 @compiled
-def _solve(normal: Any, right: Any, place: Any) -> None:
+def _solve(normal: Vector, right: Vector, place: Vector) -> None:
     """The place of symmetric normal equations (xx, xy, xz, yy, yz, zz)."""
     a, b, c, d, e, f = normal[0], normal[1], normal[2], normal[3], normal[4], normal[5]
     m00, m01, m02 = d * f - e * e, c * e - b * f, b * e - c * d

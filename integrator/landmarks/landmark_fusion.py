@@ -1,11 +1,11 @@
 """One body of what the outlines propose and what each view's picture shows of the joints."""
 
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from common.body.body import Vector
+from common.body.body import Floats, Vector
 from common.compiled import compiled
 from integrator.landmarks import (
     front_back_flip,
@@ -43,6 +43,10 @@ PLATT: Final = (2.15, 4.25)
 as that grows by e times: how often joints of r01, r04 and made-up people were less than 50 mm off.
 """
 _DIAGONAL: Final = [0, 3, 5]
+
+
+Probability = TypeVar("Probability", float, Vector)
+"""One probability, or one of each joint."""
 
 
 class Memory(NamedTuple):
@@ -213,7 +217,7 @@ def _confidence(precisions: NDArray[np.float64]) -> Vector:
     return found
 
 
-def _doubted(probability: Any, doubt: float) -> Any:
+def _doubted(probability: Probability, doubt: float) -> Probability:
     """A probability, or some, by odds that are so many times lower."""
     return probability / (probability + doubt * (1.0 - probability))
 
@@ -242,18 +246,18 @@ def _confused(rays: Rays) -> tuple[float, ...]:
 
 @compiled
 def _modes(
-    proposed_m: Any,
-    sure: Any,
-    spreads_m: Any,
-    roughly_m: Any,
+    proposed_m: Floats,
+    sure: Vector,
+    spreads_m: Vector,
+    roughly_m: Vector,
     often: float,
-    centres_m: Any,
-    directions: Any,
-    seen: Any,
-    seen_m: Any,
+    centres_m: Floats,
+    directions: Floats,
+    seen: Floats,
+    seen_m: Floats,
     stature_m: float,
-    ways: Any,
-) -> tuple[Any, Any, Any]:
+    ways: NDArray[np.int64],
+) -> tuple[Floats, Floats, Floats]:
     """Of each joint, for each way in which views may have exchanged sides: how probable its place
     is, log (12, S), the place (12, S, 3) and its precision (12, S, 6).
 

@@ -1,11 +1,11 @@
 """Limbs keep their lengths: joints that were found one by one are drawn to where they do."""
 
 import math
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
-from common.body.body import Vector
+from common.body.body import Floats, Vector
 from common.compiled import compiled
 from integrator.proposal.network_weights import JOINTS
 
@@ -48,7 +48,7 @@ def lengths_m(before: Vector | None, joints_m: Vector, stature_m: float) -> Vect
 
 
 @compiled
-def sprung(joints_m: Any, precisions: Any, lengths: Any) -> Any:
+def sprung(joints_m: Floats, precisions: Floats, lengths: Vector) -> Floats:
     """The joints (n, 3) that are the likeliest where their distances are known.
 
     Args:
@@ -80,7 +80,13 @@ def sprung(joints_m: Any, precisions: Any, lengths: Any) -> Any:
 
 @compiled
 def _pull(
-    near: int, far: int, length: float, stiff: float, joints_m: Any, normal: Any, right: Any
+    near: int,
+    far: int,
+    length: float,
+    stiff: float,
+    joints_m: Floats,
+    normal: Floats,
+    right: Vector,
 ) -> None:
     """One spring's share of the normal equations."""
     x, y, z = (

@@ -1,7 +1,7 @@
 """How far proposals have lately been off what the pictures show, and so how far to believe them."""
 
 import math
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -88,7 +88,7 @@ def doubt(misfit: Misfit, turned: bool) -> float:
     return (TURNED if turned else 1.0) * float(beyond**ODDS_EXPONENT)
 
 
-def _renewed(before: Any, squares: Any, weights: Any, joints: int) -> Any:
+def _renewed(before: float | Vector, squares: Vector, weights: Vector, joints: int) -> Vector:
     """A mean that takes a share of what so many joints say now."""
     share = EMA_WEIGHT * np.minimum(1.0, weights / joints)
     return (1.0 - share) * before + share * squares / np.maximum(weights, 1e-9)

@@ -1,7 +1,7 @@
 """From twelve joints to the angles of the ten cylinders: the way back through the kinematics."""
 
 import math
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
@@ -15,6 +15,8 @@ from common.body.body import (
     TORSO_X,
     TORSO_Y,
     TORSO_Z,
+    Floats,
+    Vector,
 )
 from common.body.proportions import (
     HIPS_UP,
@@ -43,7 +45,7 @@ HIGH_DEG: Final = np.array([LIMITS_DEG.get(name, (-np.inf, np.inf))[1] for name 
 
 
 @compiled
-def pose_of(joints_m: Any, body: Any, before: Any) -> Any:
+def pose_of(joints_m: Floats, body: Vector, before: Vector) -> Floats:
     """The pose, (25,), that puts a body's landmarks where joints are, but for their lengths.
 
     Args:
@@ -79,7 +81,7 @@ def pose_of(joints_m: Any, body: Any, before: Any) -> Any:
 
 
 @compiled
-def trunk_of(joints_m: Any) -> Any:
+def trunk_of(joints_m: Floats) -> Floats:
     """Axes of the trunk as columns, (3, 3): left, up, front."""
     up, across = np.empty(3), np.empty(3)
     for i in range(3):
@@ -94,7 +96,7 @@ def trunk_of(joints_m: Any) -> Any:
 
 @compiled
 def _set_limb(
-    pose: Any, start: Any, middle: Any, end: Any, length: float, at: int, at_bend: int
+    pose: Vector, start: Vector, middle: Vector, end: Vector, length: float, at: int, at_bend: int
 ) -> None:
     """Shoulder and elbow, or hip and knee, from joints in the trunk's axes.
 
@@ -111,7 +113,7 @@ def _set_limb(
 
 
 @compiled
-def bend(pose: Any, at: int, at_bend: int, lower: Any) -> None:
+def bend(pose: Vector, at: int, at_bend: int, lower: Vector) -> None:
     """Set the twist of an upper limb and the bend of the lower one, so that this points as told.
 
     Args:
@@ -131,7 +133,7 @@ def bend(pose: Any, at: int, at_bend: int, lower: Any) -> None:
 
 
 @compiled
-def turn_deg(lower: Any, pose: Any, at: int) -> float:
+def turn_deg(lower: Vector, pose: Vector, at: int) -> float:
     """How far a lower limb is turned against its upper one, about that one's twisted axis."""
     across, along, front = _framed(lower, pose[at], pose[at + 2])
     twist = math.radians(pose[at + 1])
@@ -139,12 +141,12 @@ def turn_deg(lower: Any, pose: Any, at: int) -> float:
 
 
 @compiled
-def _unit(arrow: Any) -> Any:
+def _unit(arrow: Vector) -> Floats:
     return arrow / max(math.sqrt(arrow[0] ** 2 + arrow[1] ** 2 + arrow[2] ** 2), 1e-9)
 
 
 @compiled
-def _cross(a: Any, b: Any) -> Any:
+def _cross(a: Vector, b: Vector) -> Floats:
     x = a[1] * b[2] - a[2] * b[1]
     return np.array([x, a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
 
@@ -156,7 +158,7 @@ def cosine(value: float) -> float:
 
 
 @compiled
-def _aim(axis: Any, at: int, before: Any) -> tuple[float, float]:
+def _aim(axis: Vector, at: int, before: Vector) -> tuple[float, float]:
     """theta_X and theta_Z, degrees, that lead a limb along an axis: of two ways the likelier."""
     x = math.degrees(math.asin(cosine(axis[2])))
     z = math.degrees(math.atan2(-axis[0], axis[1]))
@@ -169,7 +171,7 @@ def _aim(axis: Any, at: int, before: Any) -> tuple[float, float]:
 
 
 @compiled
-def _cost(at: int, turn_deg: float, before: Any) -> float:
+def _cost(at: int, turn_deg: float, before: Vector) -> float:
     """How far a parameter would turn, and how far beyond its limits."""
     low, high = LOW_DEG[at], HIGH_DEG[at]
     total = abs(apart(turn_deg, before[at]))
@@ -185,7 +187,7 @@ def apart(one_deg: float, other_deg: float) -> float:
 
 
 @compiled
-def _framed(arrow: Any, x_deg: float, z_deg: float) -> tuple[float, float, float]:
+def _framed(arrow: Vector, x_deg: float, z_deg: float) -> tuple[float, float, float]:
     """An arrow of the trunk's axes in those of a limb turned by R_z R_x."""
     a, b = math.radians(z_deg), math.radians(x_deg)
     across = math.cos(a) * arrow[0] + math.sin(a) * arrow[1]

@@ -1,7 +1,7 @@
 """Poses within the limits of joints: limbs turned as little as that takes (P30, P35)."""
 
 import math
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,7 @@ from common.body.body import (
     KNEE,
     LIMITS_DEG,
     SHOULDER,
+    Floats,
     Vector,
 )
 from common.body.kinematics import joints
@@ -60,7 +61,7 @@ def within(
 
 
 @compiled
-def held(pose: Any, before: Any) -> Any:
+def held(pose: Vector, before: Vector) -> Floats:
     """The pose with every limb where its joints let it be, (25,).
 
     A direction has two pairs of theta_X and theta_Z. Of both, as near as they come to it within
@@ -79,7 +80,7 @@ def held(pose: Any, before: Any) -> Any:
 
 
 @compiled
-def _hold(pose: Any, before: Any, at: int, at_bend: int) -> None:
+def _hold(pose: Vector, before: Vector, at: int, at_bend: int) -> None:
     """Hold one limb, whose lower half keeps its direction where it can."""
     x, y, z = pose[at], pose[at + 1], pose[at + 2]
     lower = _along(x, y, z, pose[at_bend])
@@ -92,7 +93,7 @@ def _hold(pose: Any, before: Any, at: int, at_bend: int) -> None:
 
 
 @compiled
-def _untwist(pose: Any, at: int, at_bend: int, lower: Any) -> None:
+def _untwist(pose: Vector, at: int, at_bend: int, lower: Vector) -> None:
     """Turn a knee back that points too far aside."""
     x, z = math.radians(pose[at]), math.radians(pose[at + 2])
     ahead_deg = math.degrees(math.atan2(math.sin(x) * math.sin(z), -math.cos(z)))
@@ -103,7 +104,7 @@ def _untwist(pose: Any, at: int, at_bend: int, lower: Any) -> None:
 
 
 @compiled
-def _nearest(axis: Any, at: int, before: Any) -> tuple[float, float]:
+def _nearest(axis: Vector, at: int, before: Vector) -> tuple[float, float]:
     """theta_X and theta_Z within their limits that lead a limb along an axis, or near it."""
     straight_deg = math.degrees(math.atan2(-axis[0], axis[1]))
     best, x, z = math.inf, 0.0, 0.0
@@ -137,7 +138,7 @@ def _into(angle_deg: float, at: int) -> float:
 
 
 @compiled
-def _along(x_deg: float, y_deg: float, z_deg: float, bend_deg: float) -> Any:
+def _along(x_deg: float, y_deg: float, z_deg: float, bend_deg: float) -> Floats:
     """Where a lower limb points, in the trunk's axes: R_z R_x R_y R_x(bend) of the upward axis."""
     x, y, z, b = (
         math.radians(x_deg), math.radians(y_deg), math.radians(z_deg), math.radians(bend_deg)

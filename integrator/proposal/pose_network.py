@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from common.body.body import Vector
 from common.compiled import compiled, compiling
-from integrator.proposal.network_weights import JOINTS, PoseNetwork
+from integrator.proposal.network_weights import JOINTS, LiftingNetwork, PoseNetwork
 from integrator.proposal.silhouette_window import Floats, Look
 
 SHOULDERS, ELBOWS, HIPS = slice(0, 2), slice(2, 4), slice(6, 8)
@@ -49,7 +49,9 @@ def step(
 
 
 @compiled
-def recurrent_step(network: Any, memory: Any, inputs: Any) -> tuple[Any, Any]:
+def recurrent_step(
+    network: LiftingNetwork | PoseNetwork, memory: Floats, inputs: Floats
+) -> tuple[Floats, Floats]:
     """The memory after this instant, and the outputs, of either network."""
     n, own, one = network, len(memory), np.float32(1.0)
     hidden = _relu(_product(inputs, n.fc1, n.fc1_bias))
@@ -64,7 +66,7 @@ def recurrent_step(network: Any, memory: Any, inputs: Any) -> tuple[Any, Any]:
 
 
 @compiled
-def _inputs(network: Any, windows: Any, beside: Any) -> Any:
+def _inputs(network: PoseNetwork, windows: Floats, beside: Floats) -> Floats:
     """Components of both windows, 0 of a view that does not see, and what goes beside them."""
     size = len(network.pca_bias)
     shown = np.zeros(2 * size + len(beside), np.float32)
@@ -77,7 +79,7 @@ def _inputs(network: Any, windows: Any, beside: Any) -> Any:
 
 
 @compiled
-def _product(values: Any, weights: Any, bias: Any) -> Any:
+def _product(values: Floats, weights: NDArray[np.uint16], bias: Floats) -> Floats:
     """values (n,) @ weights (n, m) + bias (m,).
 
     Weights that meet a zero, as half of the hidden units are and most of a window, are left in
@@ -103,17 +105,17 @@ def _product(values: Any, weights: Any, bias: Any) -> Any:
 
 
 @compiling(inline="always")
-def _from_bfloat16(bits: Any) -> Any:
+def _from_bfloat16(bits: np.uint16) -> np.float32:
     """The number that bfloat16 bits stand for."""
     return np.uint32(np.uint32(bits) << np.uint32(16)).view(np.float32)
 
 
 @compiled
-def _relu(values: Any) -> Any:
+def _relu(values: Floats) -> Floats:
     return np.maximum(values, np.float32(0.0))
 
 
-def sigmoid(values: Any) -> Any:
+def sigmoid(values: Floats | Vector) -> NDArray[Any]:
     """Probabilities of logits."""
     return 1.0 / (1.0 + np.exp(-values.clip(-60.0, 60.0)))
 

@@ -1,7 +1,7 @@
 """What each view shows of somebody, in a window as large as the person."""
 
 from functools import lru_cache
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import cv2
 import numpy as np
@@ -156,7 +156,12 @@ def _across(away: Vector, up: Vector) -> Vector:
 
 
 @compiled
-def _tell(turn: Any, away_m: Any, stature_m: float, out: Any) -> None:
+def _tell(
+    turn: NDArray[np.float64],
+    away_m: NDArray[np.float64],
+    stature_m: float,
+    out: NDArray[np.float32],
+) -> None:
     """That a view sees, where its camera is and its scale, (5,)."""
     far = np.sqrt((away_m * away_m).sum())
     out[0], out[4] = 1.0, NEARNESS * stature_m / far
@@ -226,7 +231,7 @@ def _cells(mask: Mask, camera: Camera, middle_m: Vector, stature_m: float, up: V
 
 
 @compiled
-def _warp(at_and_above: Any, size_px: float) -> Any:
+def _warp(at_and_above: NDArray[np.float64], size_px: float) -> NDArray[np.float64]:
     """From samples of the window to the picture, (2, 3), as OpenCV wants it.
 
     Args:

@@ -1,11 +1,11 @@
 """Where the body is, how large it is seen there and from which side (sections 4.2 and 4.4)."""
 
 import math
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
-from common.body.body import POSE_INDEX, Vector
+from common.body.body import POSE_INDEX, Floats, Vector
 from common.bus.instant import Seen
 from common.bus.messages import Facing, Pixel, Report
 from common.compiled import compiled
@@ -223,7 +223,7 @@ def triangulate(cameras: tuple[Camera, Camera], pixels: tuple[Pixel, Pixel]) -> 
 
 
 @compiled
-def _meeting(one: Any, first: Any, other: Any, second: Any) -> Any:
+def _meeting(one: Vector, first: Vector, other: Vector, second: Vector) -> Floats:
     """The middle of the shortest line between two rays, from their starts and directions (3,)."""
     cosine = along = across = 0.0
     for i in range(3):

@@ -1,12 +1,12 @@
 """S of a body whose joints are drawn as the stick body is, clothed as thickly as fits best (P9)."""
 
 import math
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from common.body.body import JOINT_NAMES, LIMB_ENDS, Vector
+from common.body.body import JOINT_NAMES, LIMB_ENDS, Floats, Vector
 from common.body.stick_body import BREADTH, GIRTH, HALF_SHOULDERS, POSE_SIZE, SHOULDER_LINE, STATURE
 from common.compiled import compiled
 from common.raster.bits import Bits, count, count_both
@@ -71,7 +71,7 @@ def _tall_px(camera: Camera, stature_m: float, joints_m: NDArray[np.float64]) ->
 
 
 @compiled
-def _similar(task: Any, stick: Any, joints_m: Any) -> float:
+def _similar(task: Task, stick: Vector, joints_m: Floats) -> float:
     """S of the body with these joints; `stick` gets the breadth that it shows."""
     ends = np.empty((12, 4))
     for row in range(12):

@@ -15,6 +15,7 @@ from common.bus.inbox import Inbox
 from common.bus.messages import Body, Posture
 from common.bus.process import ProcessContext
 from common.config.settings import Settings
+from common.npz_file import Facts
 from runtime.forking.zygote import SPAWN, Zygote
 from runtime.live.process_table import Part, page_part
 from runtime.live.recorded import MessageLog, SoFar, WholeRun
@@ -31,7 +32,8 @@ FOLLOWED: Final = ("tracking", "predicted")
 GONE_S: Final = 2.0
 """A page at which nobody looks has closed by then."""
 
-Facts = Callable[[SoFar], dict[str, Any]]
+FactsOf = Callable[[SoFar], Facts]
+"""Gives what the summary of a part of the run says."""
 
 
 class PageDesk:
@@ -51,7 +53,7 @@ class PageDesk:
         """
         self.stopped = False
         """The run was ended at the page."""
-        self.facts: Facts = lambda _: {}
+        self.facts: FactsOf = lambda _: {}
         """Gives what the summary of a saved part tells."""
         self.watched: Watched | None = None
         self._settings, self._out = settings, out
@@ -123,7 +125,7 @@ class PageDesk:
         ):
             self._began_s = None
 
-    def end(self, facts: dict[str, Any], stop: threading.Event, say: Callable[[], None]) -> None:
+    def end(self, facts: Facts, stop: threading.Event, say: Callable[[], None]) -> None:
         """Tell the page that the run is over, and wait until nobody looks at it any more.
 
         Args:

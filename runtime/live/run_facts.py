@@ -1,9 +1,8 @@
 """What the summary of a live run tells."""
 
-from typing import Any
-
 import msgspec
 
+from common.npz_file import Facts
 from common.video.clip_facts import Clip, clip_summary
 from runtime.live.launch import Heard
 from runtime.live.recorded import SoFar
@@ -13,7 +12,7 @@ from runtime.store.other_run import run_of
 from runtime.store.runs import NOBODY_SEEN
 
 
-def facts_of(heard: Heard, clip: Clip, seconds: float, so_far: SoFar) -> dict[str, Any]:
+def facts_of(heard: Heard, clip: Clip, seconds: float, so_far: SoFar) -> Facts:
     """What the summary tells of a run, so far.
 
     Args:
@@ -60,7 +59,7 @@ def note_unseen(heard: Heard) -> None:
         heard.notes.append(NOBODY_SEEN)
 
 
-def facts_of_clip(clip: Clip) -> dict[str, Any]:
+def facts_of_clip(clip: Clip) -> Facts:
     """Of what the run is, and who performs what, as the clip says itself."""
     return {
         **clip_summary(clip),
@@ -68,7 +67,7 @@ def facts_of_clip(clip: Clip) -> dict[str, Any]:
     }
 
 
-def _calibration(heard: Heard) -> dict[str, Any]:
+def _calibration(heard: Heard) -> Facts:
     """The rig that the person told, in the form of a calibration.json."""
     told = heard.cameras[-1] if heard.cameras else None
     if told is None or told.scale_source != "person":

@@ -10,13 +10,14 @@ from contextlib import AbstractContextManager, ExitStack, contextmanager, nullco
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from types import FrameType
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 from rich.console import Console
 
 from common.bus.messages import Body, Posture
 from common.bus.process import ProcessContext, logged, settle, start_log
 from common.config.settings import Settings
+from common.npz_file import Facts
 from common.video.clip_facts import Clip
 from runtime.forking.zygote import Zygote
 from runtime.live.admission import admitted, opened
@@ -44,7 +45,7 @@ def live(
     record: bool = False,
     tell: Callable[[Heard], bool | None] = lambda _: None,
     together: bool = False,
-) -> dict[str, Any]:
+) -> Facts:
     """Run the processes on a clip or on cameras until it ends or Ctrl-C; write the run folder.
 
     SIGTERM ends it too, and SIGHUP, which a terminal says that is closed.
@@ -79,7 +80,7 @@ def live(
         clip = _opened_or_nothing(settings, name, out, new=new)
         screen = Screen(clip, settings, console, lambda: desk.address)
 
-        def facts(so_far: SoFar) -> dict[str, Any]:
+        def facts(so_far: SoFar) -> Facts:
             return facts_of(heard, clip, time.monotonic() - began, so_far)
 
         desk.facts = facts
@@ -165,9 +166,7 @@ def _counts(out: Path) -> dict[str, int]:
     return {name: summary[name] for name in ("frames", "frames_with_pose")}
 
 
-def _show_end(
-    desk: PageDesk, facts: dict[str, Any], stop: threading.Event, console: Console
-) -> None:
+def _show_end(desk: PageDesk, facts: Facts, stop: threading.Event, console: Console) -> None:
     """Let the page play the run for who looks at it, unless Ctrl-C ended all."""
     if desk.stopped:
         stop.clear()

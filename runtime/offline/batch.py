@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import msgspec
 from rich.console import Console
@@ -12,6 +12,7 @@ from common.config import config_file
 from common.config.part_settings import SettingsError
 from common.config.settings import Settings
 from common.method import Mode
+from common.npz_file import Facts
 from common.video.clip_facts import Clip, camera_names, whole_rig
 from common.video.clip_sources import ClipError, footage_of, refuse_no_footage
 from common.video.pictures import DecoderDied, Undecodable
@@ -54,7 +55,7 @@ class Asked(NamedTuple):
     """How late camera 2 is."""
 
 
-def track_all(paths: Sequence[Path], out: Path, given: Asked, console: Console) -> dict[str, Any]:
+def track_all(paths: Sequence[Path], out: Path, given: Asked, console: Console) -> Facts:
     """Track clip after clip and write a run folder for each.
 
     Of several, one that cannot be used is said and left out; the others are tracked.
@@ -75,7 +76,7 @@ def track_all(paths: Sequence[Path], out: Path, given: Asked, console: Console) 
     runs = run_names(without_plain_files(paths, console))
     if given.record:
         refuse_without_library()
-    done: dict[str, Any] = {}
+    done: Facts = {}
     with Decoders() as decoders, bar(console) as progress:
         for (name, path), tell in by_share(progress, [*runs.items()], "tracking"):
             try:
@@ -102,7 +103,7 @@ def track_all(paths: Sequence[Path], out: Path, given: Asked, console: Console) 
 
 def _tracked(
     wanted: Wanted, given: Asked, decoders: Decoders, tell: Tell, console: Console
-) -> dict[str, Any]:
+) -> Facts:
     """Track a clip and write its run; what the summary tells of it."""
     folder, settings = wanted.folder, wanted.settings
     with resumable(wanted, console) as (work, made_of):

@@ -4,14 +4,14 @@ import hashlib
 import io
 import json
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import msgspec
 import numpy as np
 
 from common.atomic_file import replacing
 from common.config.settings import Settings
-from common.npz_file import Arrays, read_arrays
+from common.npz_file import Arrays, Facts, read_arrays
 from common.source_digest import add
 from common.video.clip_sources import ClipError
 from runtime.offline.lockstep import Tracked
@@ -29,7 +29,7 @@ KEPT: Final = (
 class CachedRun(NamedTuple):
     """As much of a run as recognition needs."""
 
-    facts: dict[str, Any]
+    facts: Facts
     """clip, performer, posture_meant, warnings, as in `summary.json`."""
     arrays: Arrays
     """KEPT, as in `poses.npz`."""

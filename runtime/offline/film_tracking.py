@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Sequence
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import msgspec
 import numpy as np
@@ -12,6 +12,7 @@ from common.bus.messages import Body, Report
 from common.config.settings import Settings
 from common.method import METHODS, Method
 from common.notes.notes import Notes
+from common.npz_file import Facts
 from common.raster.silhouette_report import with_silhouette
 from common.rig.camera import PAPER_ROTATIONS, Camera
 from common.video.clip_facts import Clip, clip_summary, shortfall, unread_facts
@@ -52,7 +53,7 @@ class Followed(NamedTuple):
     clip: Clip | None
     """None of a sequence of masks, likewise `background`."""
     background: Background | None
-    facts: dict[str, Any]
+    facts: Facts
 
     @property
     def size(self) -> tuple[int, int]:
@@ -128,7 +129,7 @@ def follow_clip(
     return Followed(bodies, reports, period_s, lifted.camera, clip, known_room, facts)
 
 
-def _camera_facts(assumed: Camera | None) -> dict[str, Any]:
+def _camera_facts(assumed: Camera | None) -> Facts:
     """A camera that was assumed, for the summary."""
     return {} if assumed is None else {"camera": msgspec.to_builtins(assumed)}
 
@@ -175,7 +176,7 @@ def _or_nobody(report: Report, least_share: float) -> Report:
     return with_silhouette(report, nobody)
 
 
-def _times(frames: int, **spent_s: float) -> dict[str, Any]:
+def _times(frames: int, **spent_s: float) -> Facts:
     """Seconds of each stage, and the rate, for the summary."""
     total_s = sum(spent_s.values())
     seconds = {name: round(value, 4) for name, value in spent_s.items()}

@@ -3,7 +3,7 @@
 import time
 from collections.abc import Sequence
 from contextlib import ExitStack
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import msgspec
 
@@ -12,6 +12,7 @@ from common.body.body import Bdp
 from common.bus.messages import MOST_VIEWS, Body, ScaleSource, ViewerNumber
 from common.config.settings import Settings
 from common.method import METHODS, Method
+from common.npz_file import Facts
 from common.video.clip_facts import (
     Clip,
     clip_summary,
@@ -63,7 +64,7 @@ class Tracked(NamedTuple):
 
     clip: Clip
     bodies: Sequence[Body]
-    facts: dict[str, Any]
+    facts: Facts
     """For the summary: seconds of each stage, scale_source, warnings."""
 
 
@@ -231,7 +232,7 @@ def _prepared(
     return Prepared(clip, reels, viewers, integrator, odd, time.perf_counter() - began)
 
 
-def _facts(ready: Prepared, done: Performance, sources: Sources) -> dict[str, Any]:
+def _facts(ready: Prepared, done: Performance, sources: Sources) -> Facts:
     """For the summary: what was tracked, how long it took, what was odd."""
     clip, acts = ready.clip, ready.clip.meta.acts
     endings = [(view, ready.reels[view.number].ending) for view in clip.views]

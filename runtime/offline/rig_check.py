@@ -1,13 +1,14 @@
 """Whether the rig of a run is believable: what both viewers saw is kept and asked at its end."""
 
 from collections.abc import Sequence
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import msgspec
 
 from calibration.tracks.joint_tracks import Row, Sighting, row_of, track_of_rows
 from calibration.tracks.lateness import UNSEEN, Clock, clock_of
 from common.bus.messages import Body, Report, ViewerNumber
+from common.npz_file import Facts
 from common.video.clip_facts import Clip
 from viewer.captured_frame import CapturedFrame
 
@@ -77,7 +78,7 @@ def is_late(clip: Clip, clock: Clock) -> bool:
     return clock.is_found and abs(clock.late_s) > MOST_LATE_FRAMES * period_s
 
 
-def trust_facts(clip: Clip, witness: Witness, clock: Clock, *, insisted: bool) -> dict[str, Any]:
+def trust_facts(clip: Clip, witness: Witness, clock: Clock, *, insisted: bool) -> Facts:
     """For the summary: how far the rig is to be believed, and what to do where it is not.
 
     Args:
@@ -102,7 +103,7 @@ def trust_facts(clip: Clip, witness: Witness, clock: Clock, *, insisted: bool) -
     return {"trust": msgspec.to_builtins(trust)}
 
 
-def doubts(facts: dict[str, Any]) -> list[str]:
+def doubts(facts: Facts) -> list[str]:
     """What to say of a rig that is not believable."""
     trust = facts.get("trust")
     if not trust or not trust["advice"]:
@@ -115,7 +116,7 @@ def doubts(facts: dict[str, Any]) -> list[str]:
     return [f"the calibration is not believable: {told.format(**trust)}"]
 
 
-def clock_facts(clip: Clip, clock: Clock, given_s: float | None) -> dict[str, Any]:
+def clock_facts(clip: Clip, clock: Clock, given_s: float | None) -> Facts:
     """For the summary: by how much the times of view 2 were set back, and what else may be.
 
     Args:
@@ -150,7 +151,7 @@ def doubted(bodies: Sequence[Body], clock: Clock) -> Sequence[Body]:
     ]
 
 
-def clock_word(facts: dict[str, Any]) -> str:
+def clock_word(facts: Facts) -> str:
     """What to say of the clock of view 2; "" where nothing speaks against the files' times."""
     told = facts.get("clock")
     if not told or (told["may_be_on_time"] and not told["applied_s"]):

@@ -1,7 +1,7 @@
 """A first pass over clips without a calibration: their cameras, by the person who moves there."""
 
 from collections.abc import Mapping
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import msgspec
 
@@ -11,6 +11,7 @@ from calibration.tracks.lateness import LEAST_LATE, Clock, clock_of
 from common.bus.messages import Report, ViewerNumber
 from common.config.settings import Settings
 from common.method import Method
+from common.npz_file import Facts
 from common.rig.absurd_rig import nearly_one_view
 from common.rig.rig_file import CalibrationError
 from common.video.clip_facts import Clip, set_back
@@ -113,7 +114,7 @@ def on_time(clip: Clip, clock: Clock, late_s: float) -> Clip:
     return set_back(clip, late_s) if is_late else clip
 
 
-def calibration_facts(looked: Looked) -> dict[str, Any]:
+def calibration_facts(looked: Looked) -> Facts:
     """For the summary: the calibration that was found, and how good it is."""
     if looked.found is None:
         return {}

@@ -12,6 +12,7 @@ from prometheus_client.core import Metric
 from prometheus_client.registry import Collector
 
 from common.endpoint import address_of
+from common.npz_file import Facts
 
 SLOW_S: Final = 5.0
 """Who takes longer to send a request is hung up on."""
@@ -34,7 +35,7 @@ def served(address: str, metrics: Callable[[], Iterable[Metric]], health: Health
     registry.register(_Figures(metrics))
     to_metrics = make_wsgi_app(registry)
 
-    def answer(request: dict[str, Any], start: Callable[..., Any]) -> Iterable[bytes]:
+    def answer(request: Facts, start: Callable[..., Any]) -> Iterable[bytes]:
         if request["PATH_INFO"] == "/metrics":
             return to_metrics(request, start)
         if request["PATH_INFO"] != "/healthz":

@@ -5,7 +5,7 @@ import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import msgspec
 
@@ -15,6 +15,7 @@ from common.config.part_settings import SettingsError
 from common.config.renamed_settings import in_new_words, warn_of_renamed
 from common.config.settings import Settings
 from common.endpoint import address_of
+from common.npz_file import Facts
 from runtime.live.free_ports import ports
 
 NAME: Final = re.compile(r"\w[\w.-]*", re.ASCII)
@@ -118,7 +119,7 @@ def _read(path: Path) -> SitesFile:
         raise SettingsError(f"{path}: {error}") from error
 
 
-def _own_settings(written: dict[str, Any]) -> list[dict[str, Any]]:
+def _own_settings(written: Facts) -> list[Facts]:
     """Entries that hold settings themselves."""
     entries = written.get("site")
     found = entries if isinstance(entries, list) else []

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any, Final, Literal, NamedTuple
+from typing import Final, Literal, NamedTuple
 
 import msgspec
 import numpy as np
@@ -12,6 +12,7 @@ from common.config.part_settings import BodySettings, SettingsError
 from common.config.picture_size import size_of
 from common.config.settings import Settings
 from common.method import METHODS, Mode
+from common.npz_file import Facts
 from common.rig.camera import Rig
 from common.video.clip_facts import Clip, camera_names, uprights_of, whole_rig
 from common.video.pictures import Image
@@ -56,7 +57,7 @@ class Bodies(msgspec.Struct, frozen=True):
         """One of them."""
         return self.people[place]
 
-    def to_numpy(self) -> dict[str, Any]:
+    def to_numpy(self) -> Facts:
         """As the arrays of `poses.npz`, a row a body: `joints_m` (n, 15, 3) and so on."""
         return poses(self.people, self.cameras)
 

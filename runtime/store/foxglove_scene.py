@@ -4,13 +4,14 @@ Source: Foxglove's message schemas (SceneUpdate, SceneEntity, LinePrimitive, Sph
 axes are x forward, y left, z up: a run's z, x and y.
 """
 
-from typing import Any, Final
+from typing import Final
 
 import msgspec
 
 from common.body.body import ANGLE_NAMES, ANGLES_IN_POSE, JOINT_NAMES, LIMB_ENDS
 from common.body.extremities import ALL_JOINT_NAMES, EXTREMITY_LINES
 from common.bus.messages import Body, Point
+from common.npz_file import Facts
 
 SCENE: Final = "foxglove.SceneUpdate"
 NUMBERS: Final = "tritrack.BodyNumbers"
@@ -137,11 +138,11 @@ def time_of(seconds: float) -> dict[str, int]:
     return {"sec": whole, "nsec": nanoseconds}
 
 
-def _object(properties: dict[str, Any]) -> dict[str, Any]:
+def _object(properties: Facts) -> Facts:
     return {"type": "object", "properties": properties}
 
 
-def _list(of: dict[str, Any]) -> dict[str, Any]:
+def _list(of: Facts) -> Facts:
     return {"type": "array", "items": of}
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from common.body.body import JOINT_NAMES
 from common.body.extremities import ALL_JOINT_NAMES
-from common.npz_file import Arrays
+from common.npz_file import Arrays, Facts
 
 _BEHIND: Final = {
     "joints_m": ("extremities_m", 1),
@@ -16,7 +16,7 @@ _BEHIND: Final = {
 """Which array of the extremities stands behind which of the joints, along which axis."""
 
 
-def on_disk(arrays: dict[str, Any]) -> dict[str, Any]:
+def on_disk(arrays: Arrays) -> Facts:
     """The arrays of `poses.npz`: what its readers find by `joint_names` stands in one array."""
     held = dict(arrays)
     if "extremities_m" not in held:
@@ -27,7 +27,7 @@ def on_disk(arrays: dict[str, Any]) -> dict[str, Any]:
     return held
 
 
-def all_joints_m(arrays: dict[str, Any]) -> Any:
+def all_joints_m(arrays: Arrays) -> Any:
     """Joints and extremities of a run, (n, 22, 3); the joints alone, (n, 15, 3), of one without."""
     further = arrays.get("extremities_m")
     joints_m = arrays["joints_m"]

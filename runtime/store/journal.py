@@ -14,7 +14,7 @@ import zlib
 from collections import deque
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import msgspec
 
@@ -22,6 +22,7 @@ from common.bus.control_messages import Cameras
 from common.bus.message_codec import encode
 from common.bus.messages import PROTOCOL, Body, Message, Posture
 from common.config.settings import Settings
+from common.npz_file import Facts
 
 NAME: Final = "journal.bin"
 BEFORE: Final = "journal.{:06d}.bin"
@@ -51,7 +52,7 @@ class Head(msgspec.Struct, frozen=True, kw_only=True):
     """What the results of a run hold beside what was said."""
 
     settings: Settings
-    facts: dict[str, Any]
+    facts: Facts
     """Of the summary, as far as they are known at the start."""
     protocol: int = PROTOCOL
 

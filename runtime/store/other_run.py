@@ -3,8 +3,9 @@
 import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
+from common.npz_file import Facts
 from runtime.store.runs import RunError
 
 RUN_OF: Final = "run_of"
@@ -26,7 +27,7 @@ class RunOf(NamedTuple):
     """Its films, or the run that is replayed, whole paths; cameras by their numbers."""
 
     @property
-    def facts(self) -> dict[str, Any]:
+    def facts(self) -> Facts:
         """For its summary."""
         return {RUN_OF: {"command": self.command, "footage": [*self.footage]}}
 

@@ -4,13 +4,13 @@ import json
 import re
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
 from common.body.body import ANGLE_NAMES, JOINT_NAMES, LIMBS
 from common.body.extremities import EXTREMITY_NAMES
-from common.npz_file import Arrays, read_arrays
+from common.npz_file import Arrays, Facts, read_arrays
 from runtime.store.joint_arrays import parted
 
 if TYPE_CHECKING:
@@ -64,7 +64,7 @@ class PastRun(NamedTuple):
     poses: Arrays
     """Arrays by name: those of ROWS and CAMERA_ROWS, of the extremities where it has them, what
     else the file holds. `camera_names` are the C cameras that rows have entries of."""
-    summary: dict[str, Any]
+    summary: Facts
 
 
 def is_run(folder: Path) -> bool:
@@ -166,7 +166,7 @@ def _completed(poses: Arrays) -> Arrays:
     return {**poses, "person": person, "camera_names": np.array(("cam1", "cam2")), "seen": seen}
 
 
-def _refuse_other_arrays(path: Path, poses: dict[str, Any]) -> None:
+def _refuse_other_arrays(path: Path, poses: Arrays) -> None:
     rows = len(poses["frame"]) if np.ndim(poses.get("frame", 0)) == 1 else 0
     cameras = len(np.ravel(poses.get("camera_names", ())))
     further = SINGLE_ROWS | EXTREMITY_ROWS | _by_camera(EXTREMITY_CAMERA_ROWS, cameras)

@@ -12,14 +12,15 @@ import numpy as np
 from common.body.body import ANGLE_NAMES, ANGLES_IN_POSE, JOINT_NAMES, LIMBS
 from common.body.extremities import EXTREMITY_NAMES
 from common.bus.messages import Body, Lifting
+from common.npz_file import Arrays
 
 AT_ONCE: Final = 2_000
 """Rows in memory: some 10 kB each until they are arrays."""
 
-Laid = Callable[[dict[str, Any]], dict[str, Any]]
+Laid = Callable[[Arrays], Arrays]
 
 
-def poses(bodies: Iterable[Body], cameras: Sequence[str] = ()) -> dict[str, Any]:
+def poses(bodies: Iterable[Body], cameras: Sequence[str] = ()) -> Arrays:
     """The arrays of a run; a row without a pose is NaN.
 
     They are gone through twice, some thousand at once. What `poses.npz` holds of each joint,
@@ -45,7 +46,7 @@ def mapped_poses(
     folder: Path,
     laid: Laid = lambda arrays: arrays,
     cameras: Sequence[str] = (),
-) -> Iterator[dict[str, Any]]:
+) -> Iterator[Arrays]:
     """The same of however many bodies; of many the arrays are mapped from files, then removed.
 
     Args:
@@ -97,7 +98,7 @@ def _told_by(bodies: Iterable[Body], names: Sequence[str]) -> _Told:
     return _Told(not without, lifted, cameras)
 
 
-def _arrays(bodies: Sequence[Body], told: _Told) -> dict[str, Any]:
+def _arrays(bodies: Sequence[Body], told: _Told) -> Arrays:
     n, cameras = len(bodies), len(told.cameras)
 
     def rows(values: Iterable[Any], shape: tuple[int, ...]) -> Any:
@@ -130,7 +131,7 @@ def _arrays(bodies: Sequence[Body], told: _Told) -> dict[str, Any]:
     }
 
 
-def _by_camera(bodies: Sequence[Body], cameras: int) -> dict[str, Any]:
+def _by_camera(bodies: Sequence[Body], cameras: int) -> Arrays:
     """What each camera tells of the body; of two also in one word."""
     n = len(bodies)
     words = {"views": np.array([body.views for body in bodies], "U4")} if cameras == 2 else {}
@@ -142,7 +143,7 @@ def _by_camera(bodies: Sequence[Body], cameras: int) -> dict[str, Any]:
     }
 
 
-def _extremities(bodies: Sequence[Body], rows: Callable[..., Any], cameras: int) -> dict[str, Any]:
+def _extremities(bodies: Sequence[Body], rows: Callable[..., Any], cameras: int) -> Arrays:
     """Nose, heels, toes and knuckles."""
     count = len(EXTREMITY_NAMES)
     sure = (body.extremities_confidence or (0.0,) * count for body in bodies)
@@ -153,7 +154,7 @@ def _extremities(bodies: Sequence[Body], rows: Callable[..., Any], cameras: int)
     }
 
 
-def _liftings(told: Sequence[Lifting | None]) -> dict[str, Any]:
+def _liftings(told: Sequence[Lifting | None]) -> Arrays:
     """What one view alone decided by itself, where it did: the arrays that retouching needs."""
     nothing = Lifting("", 1.0, ())
     each = [one or nothing for one in told]

@@ -15,6 +15,7 @@ import numpy as np
 from common.atomic_file import replacing, unwritten
 from common.bus.messages import Body, Posture, Status
 from common.config.settings import Settings
+from common.npz_file import Facts
 from runtime.store.joint_arrays import on_disk
 from runtime.store.pose_arrays import mapped_poses
 from runtime.store.run_exports import remove_exports
@@ -40,7 +41,7 @@ def write_run(
     folder: Path,
     bodies: Iterable[Body],
     settings: Settings,
-    facts: dict[str, Any],
+    facts: Facts,
 ) -> None:
     """Write `poses.npz` and `summary.json`, each whole or not at all.
 
@@ -113,7 +114,7 @@ def write_postures(folder: Path, postures: Iterable[Posture], performed: str) ->
         raise unwritable(folder, error) from error
 
 
-def _row_of(posture: Posture) -> dict[str, Any]:
+def _row_of(posture: Posture) -> Facts:
     return {
         "frame": posture.frame,
         "time_s": round(posture.captured_s, 4),
@@ -136,7 +137,7 @@ def _believed(often: Counter[Status]) -> float | None:
     return round(sum(often[status] for status in BELIEVED) / seen, 4) if seen else None
 
 
-def summary_of(bodies: Iterable[Body], settings: Settings, facts: dict[str, Any]) -> dict[str, Any]:
+def summary_of(bodies: Iterable[Body], settings: Settings, facts: Facts) -> Facts:
     """What `summary.json` tells of these bodies, with the facts given."""
     often: Counter[Status] = Counter()
     matches: list[int] = []

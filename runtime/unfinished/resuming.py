@@ -4,12 +4,13 @@ import json
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 from rich.console import Console
 
 from common.config.part_settings import SettingsError
 from common.config.settings import Settings
+from common.npz_file import Facts
 from common.video.clip_sources import ClipError, footage_of
 from common.video.pictures import DecoderDied, Undecodable
 from runtime.store import journal
@@ -33,7 +34,7 @@ class Begun(NamedTuple):
     """A run that begins, or goes on."""
 
     work: Work
-    facts: dict[str, Any]
+    facts: Facts
     """For its summary."""
 
 
@@ -49,7 +50,7 @@ class Wanted(NamedTuple):
     """It goes on where it was left."""
 
 
-def done_before(wanted: Wanted, console: Console) -> dict[str, Any] | None:
+def done_before(wanted: Wanted, console: Console) -> Facts | None:
     """The summary of the same run, where it is to be resumed and is over already.
 
     Raises:
@@ -59,7 +60,7 @@ def done_before(wanted: Wanted, console: Console) -> dict[str, Any] | None:
     if not wanted.resume or not _lasts(wanted.settings) or (wanted.folder / FOLDER).exists():
         return None
     try:
-        summary: dict[str, Any] = json.loads(path.read_text())
+        summary: Facts = json.loads(path.read_text())
     except (OSError, ValueError):
         return None
     word = word_of(identity_of(wanted.settings, wanted.told))
