@@ -1,4 +1,4 @@
-"""A film on disk: pictures written one after the other, whole or not at all."""
+"""A video on disk: pictures written one after the other, whole or not at all."""
 
 import math
 from collections.abc import Iterable
@@ -21,21 +21,21 @@ FINEST_HZ: Final = 65_535
 
 
 class FilmError(RuntimeError):
-    """A film that cannot be written: the text names it and the cure."""
+    """A video that cannot be written: the text names it and the cure."""
 
 
 class Film(NamedTuple):
-    """A film that was written."""
+    """A video that was written."""
 
     path: Path
     codec: Codec
 
 
 def write_film(path: Path, pictures: Iterable[Picture], fps: float) -> Film:
-    """Write a film as well as this machine can; it takes its place when all of it is there.
+    """Write a video as well as this machine can; it takes its place when all of it is there.
 
     Args:
-        path: Without a suffix: that is the codec's. A film of that name in another codec is
+        path: Without a suffix: that is the codec's. A video of that name in another codec is
             removed.
         pictures: All of one size.
         fps: Pictures a second.

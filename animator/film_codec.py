@@ -1,4 +1,5 @@
-"""How films can be encoded on this machine: `python -m animator.film_codec W H` tries and tells."""
+"""How videos can be encoded on this machine: `python -m animator.film_codec W H` tries and
+tells."""
 
 import subprocess
 import sys
@@ -16,7 +17,7 @@ TRIAL_PICTURES: Final = 3
 
 
 class Codec(NamedTuple):
-    """A way to encode a film, and the file that it comes in."""
+    """A way to encode a video, and the file that it comes in."""
 
     name: str
     code: str
@@ -52,7 +53,7 @@ def best_codec(size: tuple[int, int]) -> Codec:
 
 
 def pictures_in(path: Path, codec: Codec) -> int:
-    """How many pictures a film says that it has; 0 where it is none."""
+    """How many pictures a video says that it has; 0 where it is none."""
     written = cv2.VideoCapture(str(path), codec.by)
     kept = int(written.get(cv2.CAP_PROP_FRAME_COUNT)) if written.isOpened() else 0
     written.release()
@@ -60,7 +61,7 @@ def pictures_in(path: Path, codec: Codec) -> int:
 
 
 def works(codec: Codec, size: tuple[int, int]) -> bool:
-    """Whether a film of a few pictures can be written, and is one."""
+    """Whether a video of a few pictures can be written, and is one."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"trial{codec.suffix}"
         code = cv2.VideoWriter.fourcc(*codec.code)

@@ -67,7 +67,7 @@ def _far_ends(limbs: Shapes) -> NDArray[np.float64]:
 
 
 def _colours(body: Body) -> Colours:
-    """By side, pale where nobody measured a knuckle or a toe."""
+    """By side, pale where no knuckle or toe was measured."""
     sure = dict(zip(EXTREMITY_NAMES, body.extremities_confidence, strict=False))
     strength = [sure.get(f"{s}_{end}", 0.0) for end in ("knuckle", "toe") for s in _SIDES]
     return faded(np.array([RIGHT, LEFT, RIGHT, LEFT], float), np.array(strength))

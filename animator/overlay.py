@@ -65,7 +65,7 @@ def overlay(
     confidence: Vector,
     caption: str = "",
 ) -> Image:
-    """One frame of the overlay film; two of one picture size have one size.
+    """One frame of the overlay video; two of one picture size have one size.
 
     Args:
         picture: The video's frame.
@@ -126,7 +126,7 @@ def side_view(joints_m: Vector, confidence: Vector, height_px: int, caption: str
 
 @lru_cache(maxsize=4)
 def _stage(height_px: int) -> Image:
-    """The view from the side without anybody."""
+    """The view from the side without a person."""
     width_px = 2 * round(SIDE_SHARE * height_px / 2)
     view: Image = np.full((height_px, width_px, 3), PAPER, np.uint8)
     floor_px = _floor_px(height_px)

@@ -18,7 +18,8 @@ SEEN: Final = 0.3
 """A joint that keeps less than this of the confidence of the joint before it is hidden, the
 thesis's "highly occluded"; a direction that is not sure costs it a half at most."""
 FLAT_DEG: Final = 15.0
-"""A segment that leans less out of the picture's plane has no direction that anybody would see."""
+"""A segment that leans less out of the picture's plane has no direction that anyone would
+see."""
 
 _AT: Final = {name: i for i, name in enumerate(JOINT_NAMES)}
 _FAR: Final = {int(far): int(near) for near, far in LIMB_ENDS}

@@ -56,7 +56,7 @@ def parents(root: Path, environ: Mapping[str, str]) -> Iterator[Path]:
     """Where the folder may lie, best first.
 
     What numba is told in NUMBA_CACHE_DIR; the checkout; the user's cache folder, for an installed
-    wheel or a checkout that belongs to somebody else.
+    wheel or a checkout of another owner.
     """
     if environ.get("NUMBA_CACHE_DIR"):
         yield Path(environ["NUMBA_CACHE_DIR"])
@@ -105,7 +105,7 @@ def _made(folder: Path) -> Path:
 
 
 def _private() -> Path:
-    """A folder for temporary files that nobody else can have put anything into: another user's
+    """A folder for temporary files that no other user can have put anything into: another user's
     compiled code would be a stranger's program."""
     folder = Path(tempfile.gettempdir()) / f"tritrack-{os.getuid()}"
     with suppress(FileExistsError):

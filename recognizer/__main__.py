@@ -29,12 +29,12 @@ SHIPPED = Path(__file__).parent / "postures.npz"
 SHIPPED_PAPER = SHIPPED.with_name("postures_paper.npz")
 """Model file of `paper` mode: the paper's recogniser, learnt from what that mode tracks."""
 REACH_FRAMES: Final = 900
-"""A performance that is longer is told from there on: a minute at the paper's rate."""
+"""A performance that is longer is reported from there on: a minute at the paper's rate."""
 GAP_S: Final = 1.0
 """No body for longer ends what was going on, as so many frames without a pose do: what came before
 a cut and what comes after it are not one motion."""
 UNNUMBERED: Final = -1
-"""Frame of what is told of no frame of its own, as at the end of a run."""
+"""Frame of a message that belongs to no frame of its own, as at the end of a run."""
 HEAR_S = 0.05
 MOVING = ("tracking", "predicted")
 """States in which a body's angles say what it does; the opening posture is no motion. Smooth angles
@@ -87,11 +87,11 @@ def step(state: State, body: Body) -> tuple[State, Posture]:
 
 
 def finish(state: State, last: Posture) -> Posture | None:
-    """What there is to tell at the end of a run: the performance that it cuts off, if any.
+    """What is reported at the end of a run: the performance that it cuts off, if any.
 
     Args:
         state: After the last body.
-        last: What was told of that.
+        last: What was reported of that.
     """
     event = None if state.events is None else events.finish(state.events)
     if event is None:
@@ -182,7 +182,7 @@ def run(
 
 
 def _lost(bodies: Inbox[Body]) -> dict[str, int]:
-    """What was lost so far, as a Pulse tells it."""
+    """What was lost so far, as a Pulse reports it."""
     return {
         "dropped": bodies.dropped,
         "malformed": bodies.malformed,

@@ -18,7 +18,7 @@ SYMBOLS: Final = 64
 
 WEIGHTS: Final = np.array([3.0 if "_hip" in entry else 1.0 for entry in FEATURE_NAMES])
 """By how much an entry counts in distances. Legs move less than arms, and among 64 symbols too few
-would tell their motions apart: with 1, 2, 3 and 4, and the best width of sharing for each, 352,
+would distinguish their motions: with 1, 2, 3 and 4, and the best width of sharing for each, 352,
 363, 374 and 369 of 420 held-out synthetic performances were named rightly."""
 
 STARTS: Final = 4
@@ -30,7 +30,7 @@ class LearningError(ValueError):
 
 
 def fit(seen: Features, seed: int = 0, count: int = SYMBOLS) -> Codebook:
-    """Codewords for the feature vectors (n, 16) of the people to learn from, and of nobody else.
+    """Codewords for the feature vectors (n, 16) of the people to learn from alone.
 
     k-means with a seed, in one thread: the same vectors give the same codewords, bit for bit. The
     paper does not say how its symbols were found (P57).

@@ -1,4 +1,4 @@
-"""Performances found in a stream that nobody cuts: one event each, as soon as it is over."""
+"""Performances found in an uncut stream: one event each, as soon as it is over."""
 
 import math
 from dataclasses import dataclass, replace
@@ -54,7 +54,7 @@ class State:
     """Feature vectors of the last few."""
     next_frame: int = 0
     stood: bool = False
-    """Somebody was seen standing: until then no posture begins."""
+    """A person was seen standing: until then no posture begins."""
     judged: int = -1
     """Last frame of the last performance that was judged."""
     told: tuple[Event, ...] = ()
@@ -100,7 +100,8 @@ def step(state: State, row: NDArray[np.float64] | None) -> tuple[State, Doing]:
 
 
 def finish(state: State) -> Event | None:
-    """The performance that the end of a stream cuts off, or follows too soon for it to be told."""
+    """The performance that the end of a stream cuts off, or follows too soon for it to be
+    reported."""
     best = int(state.score.argmax())
     under_way = best < len(state.score) - 2
     over = np.append(state.record[best], state.frames[-1]) if under_way else state.over[best]
@@ -108,10 +109,10 @@ def finish(state: State) -> Event | None:
 
 
 def _judged(state: State, over: NDArray[np.int64]) -> tuple[tuple[Event, ...], Event | None]:
-    """The parts of the last event now, and what there is to tell of it.
+    """The parts of the last event now, and what is reported of it.
 
     The best path may be one that stayed in its posture through a pause after which another one was
-    judged: what was told then is a part of it.
+    judged: what was reported then is a part of it.
     """
     told = state.told
     seen = [over[ONSET] <= frame <= over[LAST] for frame in state.frames]

@@ -46,7 +46,7 @@ FEATURE_NAMES: Final = tuple(
 
 
 def rows(angles_deg: NDArray[np.float64], joints_m: NDArray[np.float64]) -> Rows:
-    """What a recogniser is told of a stretch of frames, (n, 20).
+    """What a recogniser is given of a stretch of frames, (n, 20).
 
     Places count in leg lengths: a tall and a small person who squat alike shall look alike, and a
     world of assumed scale like a measured one.
@@ -64,7 +64,7 @@ def with_pose(given: Rows) -> Rows:
     """The rows (m, 20) in which all is known: frames without a pose are dropped.
 
     An observation that was not made is no symbol: a hidden Markov model takes the next one, and
-    carrying the old pose on would tell it of a standstill that nobody saw.
+    carrying the old pose on would show it a standstill that was not seen.
     """
     return given[np.isfinite(given).all(axis=1)]
 
@@ -127,7 +127,7 @@ def bearings(given: Rows) -> Bearings:
     """The feature vectors of rows with a pose, (n, 27).
 
     A direction is a limb's own axis in the body's frame; travel is seen from the body: to its
-    side, up, and ahead. Without travel no model could tell walking towards somebody
+    side, up, and ahead. Without travel no model could distinguish walking towards a person
     from walking in place: limbs alone are all that the paper's ten angles speak of.
 
     Source: section 2.2 (M_N^S, M_S^F: C3, C4) for the directions.

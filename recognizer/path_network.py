@@ -172,7 +172,7 @@ def advance(
         log_transition: (p, s, s).
         side: (p, s) on which end of a repetition each state lies: 1 far, -1 near, 0 between.
         frame: Number of this frame.
-        open_: Whether a posture may begin: once somebody was seen standing.
+        open_: Whether a posture may begin: once a person was seen standing.
 
     Returns:
         score, record and over of this frame.

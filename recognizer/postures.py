@@ -45,7 +45,7 @@ STATES: Final = 5
 LEAST_FIT: Final[dict[Recognizer, float]] = {"default": 23.0, "paper": -3.2}
 """Log-likelihood of a frame, on average over a motion, below which the motion is none that was
 taught. Of 420 held-out synthetic performances 2 % lie below; of the same ones, judged by models to
-which nobody had taught their posture, 77 % and 35 %: the others have a near relative."""
+whose posture was not taught, 77 % and 35 %: the others have a near relative."""
 
 PER_POSTURE: Final = ("start", "transition", "emission", "mean", "variance", "fit")
 """Arrays of a model with a row for each posture; the others all postures share."""
@@ -61,7 +61,7 @@ class Card(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """How many sequences of each posture were learnt from."""
     frames: int
     performers: tuple[str, ...] = ()
-    """Who was seen in training: nobody whose recognition shall count."""
+    """Who was seen in training: their recognition does not count."""
 
 
 @dataclass(frozen=True, eq=False)

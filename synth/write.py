@@ -56,7 +56,7 @@ class ClipSet(NamedTuple):
 
 
 class Filming(NamedTuple):
-    """By what a motion is filmed."""
+    """By what a motion is recorded."""
 
     rig: Rig
     """The cameras, by whose names the files and arrays are called."""
@@ -123,11 +123,11 @@ def write_clip(folder: Path, someone: Person, motion: Motion, filming: Filming, 
         folder: Made where it is missing.
         someone: Who performs.
         motion: What they do.
-        filming: By what they are filmed.
+        filming: By what they are recorded.
         take: Number of the take, for the notes.
 
     Raises:
-        SynthError: When a film cannot be written there.
+        SynthError: When a video cannot be written there.
     """
     rig, room_seed, seed = filming
     folder.mkdir(parents=True, exist_ok=True)
@@ -154,7 +154,8 @@ def _rig_text(rig: Rig) -> bytes:
 
 
 def _refuse_to_lose(path: Path, rig: Rig) -> None:
-    """Other clips beside it may have been filmed by the cameras of a calibration that is there."""
+    """Other clips beside it may have been recorded by the cameras of a calibration that is
+    there."""
     if path.exists() and path.read_bytes() != _rig_text(rig):
         raise SynthError(f"{path} is of other cameras, whose clips it serves: name another --out")
 
@@ -206,7 +207,7 @@ def _meta(someone: Person, motion: Motion, filming: Filming, take: int) -> dict[
 
 
 def _truth(someone: Person, motion: Motion, rig: Rig, take: int) -> dict[str, np.ndarray]:
-    """The arrays of `truth.npz` but those that the films give."""
+    """The arrays of `truth.npz` but those that the videos give."""
     count = len(motion.phase)
     return {
         "joints3d": motion.joints_m.astype(np.float32),

@@ -26,7 +26,7 @@ ENDINGS: Final[dict[Format, tuple[str, ...]]] = {
     **{to: (Path(name).suffix,) for to, name in OWN_NAMES.items()},
     "usd": (".usdc", ".usd", ".usda"),
 }
-"""What a file's name may end in: none of them ends what a run or its footage is made of."""
+"""What a file's name may end in: none of them ends what a run or its video is made of."""
 
 
 class ExportError(RuntimeError):

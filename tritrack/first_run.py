@@ -10,8 +10,8 @@ from common.child.parent_death import end_with
 
 
 def compile_all() -> None:
-    """Track a made-up clip by both cameras and by one, and pass through what live parts and a film
-    meet besides, so that no later run need compile.
+    """Track a synthetic clip by both cameras and by one, and pass through what live parts and a
+    video meet besides, so that no later run need compile.
 
     A mark in the folder of what is compiled says that this was done: the next time takes no longer
     than importing numba.
@@ -39,6 +39,6 @@ def _run_all() -> None:
 
 
 if __name__ == "__main__":
-    if len(sys.argv) > 1:  # the number of who started it, and without whom nobody needs it
+    if len(sys.argv) > 1:  # the number of who started it, and without which it is not needed
         end_with(int(sys.argv[1]))
     compile_all()

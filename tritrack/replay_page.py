@@ -46,7 +46,8 @@ def replay_on_page(folder: Path, port: int, console: Console) -> Facts:
 
 
 def show(page: LivePage, recording: Recording) -> int:
-    """Tell a page all bodies of a recording, each with its outlines and its posture; how many."""
+    """Tell a page all bodies of a recording, each with its silhouettes and its posture; how
+    many."""
     rigs: dict[int, Rig | None] = {told.calibration: told.rig for told in recording.cameras}
     made_of = {body.captured_s: instant for body, instant in instants(recording)}
     postures = {posture.captured_s: posture for posture in recording.postures}

@@ -144,7 +144,7 @@ def run(prepared: Prepared, live: Live, bus: Bus, stop: threading.Event) -> None
     except (DecoderDied, Undecodable) as error:
         why = str(error)
         raise
-    finally:  # Also when the decoder broke: nobody shall wait for this view again.
+    finally:  # Also when the decoder broke: this view shall not be waited for again.
         bus.publish(Ended(viewer=view.number, frames=pace.frames, why=why))
     for odd in (shortfall(view, live.ending) if live.over else "", shedder.odd(pace.frames)):
         if odd:

@@ -55,7 +55,7 @@ def step(
 
 def _blank(background: NDArray[np.float32], picture: Image) -> CameraFault:
     """What a plain picture is; before a plain wall it is that wall in another light, while there
-    is light enough to see somebody by."""
+    is light enough to see a person by."""
     if _contrast_of(picture) > PLAIN:
         return ""
     grey = _grey(picture)

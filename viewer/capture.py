@@ -52,7 +52,7 @@ def recorded(
 
 
 class RoomClock(NamedTuple):
-    """When a recorded clip begins, and how to tell the time in the room."""
+    """When a recorded clip begins, and the room's clock."""
 
     start_s: float
     """By the room's clock."""
@@ -130,7 +130,7 @@ class Live:
 
     @property
     def over(self) -> bool:
-        """True when the last frame was taken; of a video that broke, `take` tells that."""
+        """True when the last frame was taken; of a video that broke, `take` says that."""
         return self._waiting.over and self._failure is None
 
     def take(self, timeout_s: float) -> CapturedFrame | None:
@@ -190,7 +190,7 @@ class Live:
         )
 
     def _counted_from(self, now_s: float) -> int:
-        """The number of a camera's first frame: 0 at the run's start, what time tells where a
+        """The number of a camera's first frame: 0 at the run's start, what time says where a
         viewer is started again, so that no number comes twice."""
         if self._first_index is None:
             since = max(0.0, now_s - self._room.start_s) * self._view.fps / self._every

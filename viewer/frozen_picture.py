@@ -11,7 +11,7 @@ from common.video.pictures import Image
 
 FROZEN_AFTER: Final = 2
 """Repeats that may be no fault: files made for a faster rate hold each picture two or three times,
-and no filmed clip that was looked at held one more than twice."""
+and no recorded clip that was looked at held one more than twice."""
 FROZEN_S: Final = FROZEN_AFTER / 15
 """How long that takes at the paper's rate (P1): faster files hold pictures more often."""
 CELL: Final = 16
@@ -98,7 +98,7 @@ def _compared(state: State, picture: Image, captured_s: float) -> State:
 
 @compiled
 def _same(one: Image, other: Image) -> bool:
-    """Whether pictures of one size are the same; the first pixels tell when they are not."""
+    """Whether pictures of one size are the same; the first pixels show when they are not."""
     for y in range(one.shape[0]):
         for x in range(one.shape[1]):
             for c in range(3):

@@ -1,4 +1,4 @@
-"""A viewer that is late leaves out what costs most: the look at what its outline holds."""
+"""A viewer that is late leaves out what costs most: the look at what its silhouette holds."""
 
 from typing import Final
 
@@ -19,7 +19,7 @@ class LoadShedder:
     """Which frames are in a hurry.
 
     A machine with more rooms than it has the time for would otherwise be late with every body of
-    every room; outlines alone, in between, still tell where the joints are.
+    every room; silhouettes alone, in between, still show where the joints are.
     """
 
     def __init__(self, period_s: float) -> None:
@@ -41,7 +41,7 @@ class LoadShedder:
         return msgspec.structs.replace(frame, hurried=True)
 
     def odd(self, frames: int) -> str:
-        """What is to be told at the end of so many frames; "" where few were in a hurry."""
+        """What is reported at the end of so many frames; "" where few were in a hurry."""
         if self.frames <= TOLD * frames:
             return ""
         return (

@@ -78,7 +78,7 @@ class State(NamedTuple):
     near_px: Pixel | None = None
     """The middle of the last silhouette, where no guide tells where the body is expected."""
     moved: moved_camera.State | None = None
-    """Whether the camera was moved; None: nobody asks."""
+    """Whether the camera was moved; None: no person asks."""
 
 
 def init(
@@ -94,7 +94,7 @@ def init(
     Args:
         setup: Which viewer it is, and how it works.
         background: The picture without people.
-        patches: What of the background changes, where a whole film was looked at before.
+        patches: What of the background changes, where a whole video was looked at before.
         standing: How tall the person stands, likewise.
         somebody: Who is in the first frame, likewise: without that, what is largest is followed.
     """
@@ -252,7 +252,7 @@ def _landmarks(state: State, frame: CapturedFrame, seen: Seen) -> Landmarks | No
 
 
 def _is_left_out(setup: Setup, frame: CapturedFrame) -> bool:
-    """Whether the look at what the outline holds is left out."""
+    """Whether the look at what the silhouette holds is left out."""
     return frame.hurried and not setup.alone and setup.settings.looks_itself
 
 

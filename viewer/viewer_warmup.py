@@ -15,7 +15,7 @@ from viewer.silhouette import silhouette
 
 
 def warm_up(state: track.State, size: tuple[int, int]) -> None:
-    """Step through four frames of somebody who takes the opening posture: nobody guides, an
+    """Step through four frames of a person who takes the opening posture: no person guides, an
     integrator does, it knows the body, it asks for the stick figure.
 
     Args:

@@ -1,4 +1,4 @@
-"""USD: a skinned figure of sticks that moves, for film and game pipelines, by Pixar's library.
+"""USD: a skinned figure of sticks that moves, for video and game pipelines, by Pixar's library.
 
 Source: OpenUSD 26.11, UsdSkel (the schemas SkelRoot, Skeleton, SkelAnimation and their binding).
 Metres, +y up, the figure faces +z; one time code a frame, the first is 0.

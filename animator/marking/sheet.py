@@ -10,7 +10,7 @@ from common.bus.messages import Pixel
 Size = tuple[int, int]
 """Width and height, pixels."""
 MOST_MARKS: Final = 60
-"""Points in each picture: far more than anybody clicks."""
+"""Points in each picture: far more than anyone clicks."""
 MOST_SAID_BYTES: Final = 30_000
 """A sheet of so many points, and some."""
 FARTHEST_M: Final = 1000.0
@@ -71,9 +71,9 @@ class Pictures(msgspec.Struct, frozen=True):
     number: int
     name: str
     stills: tuple[str, ...]
-    """Addresses, in the film's order; of a camera that runs one, whose picture is always new."""
+    """Addresses, in the video's order; of a camera that runs one, whose picture is always new."""
     frames: tuple[int, ...]
-    """Which frame of the film each still is."""
+    """Which frame of the video each still is."""
     runs: bool
 
 

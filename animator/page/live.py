@@ -29,7 +29,7 @@ class LivePage:
     Args:
         title: Of the run.
         port: Of this machine, free.
-        commands: Whether somebody hears what the person asks for.
+        commands: Whether anything hears what the user asks for.
         entrance: Where it listens, and to whom.
         most_bytes: Of frames that are kept for a browser that comes late.
 

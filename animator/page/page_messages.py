@@ -95,7 +95,7 @@ class Greeting(msgspec.Struct, frozen=True, tag="hello", tag_field="kind"):
     run: int
     """Another one is another run, or another process of this one: a page begins afresh."""
     commands: bool
-    """Whether somebody hears what the person asks for."""
+    """Whether anything hears what the user asks for."""
     angles: tuple[str, ...] = ANGLE_NAMES
     joints: tuple[str, ...] = ALL_JOINT_NAMES
     large: int = len(JOINT_NAMES)

@@ -46,7 +46,7 @@ POLICY: Final = (
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; "
     "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
 )
-"""The browser itself keeps the page from asking anybody else."""
+"""The browser itself keeps the page from asking another server."""
 
 log = logging.getLogger(__name__)
 
@@ -56,7 +56,7 @@ File = tuple[str, bytes]
 
 def is_of_ours(record: logging.LogRecord) -> bool:
     """Whether the library's log tells of more than a connection whose peer asked for nothing, or
-    for nonsense: anybody may open one, we look so ourselves whether the page answers."""
+    for nonsense: any user may open one, so we look ourselves whether the page answers."""
     kind = record.exc_info[0] if record.exc_info else None
     return kind is None or not issubclass(kind, InvalidHandshake | EOFError | OSError)
 
@@ -126,7 +126,7 @@ class PageServer:
 
     def tell(self, message: bytes) -> None:
         """Send a message (JSON text) to every browser; never waits for one."""
-        with suppress(RuntimeError):  # the loop is closed: nobody is there
+        with suppress(RuntimeError):  # the loop is closed: no page is there
             self._door.loop.call_soon_threadsafe(self._spread, message)
 
     def close(self) -> None:

@@ -47,7 +47,7 @@ from common.rig.upright_camera import as_worked_on
 MOST_RIVALS: Final = 6
 """Most postures that are shown with their probability."""
 SMOOTH_PX: Final = 0.7
-"""An outline's corners lie no farther from its pixels."""
+"""A silhouette's corners lie no farther from its pixels."""
 FACING_WORDS: Final[dict[Facing, str]] = {"facade": "front or back", "flank": "side"}
 SOURCE_WORDS: Final[dict[ScaleSource, str]] = {
     "calibrated": "",

@@ -11,7 +11,7 @@ import viser
 from animator.page.door import HOST, PageError, is_own, refuse_port, unusable
 
 POLICY_VIOLATION: Final = 1008
-"""What a WebSocket says when it closes on somebody who may not enter (RFC 6455, 7.4.1)."""
+"""What a WebSocket says when it closes on a client that may not enter (RFC 6455, 7.4.1)."""
 
 
 def open_server(port: int) -> viser.ViserServer:

@@ -14,7 +14,7 @@ Floats = NDArray[np.float64]
 ROUNDS: Final = 5
 """Of the fit: joints that are 1 cm off have bones within a hundredth of a millimetre of theirs."""
 AT_ONCE: Final = 4096
-"""Rows that are fitted together: a long film has more than memory has room for."""
+"""Rows that are fitted together: a long video has more than memory has room for."""
 NO_BONE: Final = 1e-9
 """Is added where both ends of a bone are in one place, which has no direction."""
 _AT: Final = {name: i for i, name in enumerate(ALL_JOINT_NAMES)}

@@ -1,1 +1,1 @@
-"""Cameras by a printed board: its corners, the rig that they tell, the floor, the coverage."""
+"""Cameras by a printed board: its corners, the rig that they give, the floor, the coverage."""

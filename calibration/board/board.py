@@ -38,7 +38,7 @@ BOARDS: Final[dict[Paper, Board]] = {
     "a4": Board(5, 4, 0.048, 0),
     "a3": Board(5, 4, 0.070, 10),
 }
-"""What is printed; each has markers of its own, so that a film says which it shows."""
+"""What is printed; each has markers of its own, so that a video says which it shows."""
 
 
 def chessboard(squares: str, square_m: float) -> Board:

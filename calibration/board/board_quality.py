@@ -12,7 +12,7 @@ from calibration.board.still_board import Moments, seen_by
 
 
 class CameraQuality(msgspec.Struct, frozen=True):
-    """What the board tells of one camera."""
+    """What the board shows of one camera."""
 
     name: str
     focal_px: float
@@ -36,7 +36,7 @@ class Quality(msgspec.Struct, frozen=True):
     shared_rests: int
     """In which two cameras or more showed the board."""
     floor_s: float
-    """When the board lay on the floor, by the first film."""
+    """When the board lay on the floor, by the first video."""
     floor_rests: int
     """How often it lay there."""
 
@@ -44,7 +44,7 @@ class Quality(msgspec.Struct, frozen=True):
 def quality_of(
     fit: Fit, sights: list[Sight], moments: Moments, floor: Floor, size_px: tuple[int, int]
 ) -> Quality:
-    """What a fit tells of its cameras."""
+    """What a fit says of its cameras."""
     seen = seen_by(moments)
     cameras = []
     for n, lens in enumerate(fit.lenses):

@@ -1,4 +1,4 @@
-"""A rig from films of a board, and how good it is."""
+"""A rig from videos of a board, and how good it is."""
 
 from collections.abc import Sequence
 from typing import Final, NamedTuple
@@ -46,7 +46,7 @@ have looked at the same moments."""
 
 
 class BoardCalibration(NamedTuple):
-    """What films of a board tell."""
+    """A rig from videos of a board, and how good it is."""
 
     rig: Rig
     quality: Quality
@@ -57,15 +57,15 @@ class BoardCalibration(NamedTuple):
 def calibrated_by_board(
     films: Sequence[Film], board: Board, floor_s: float | None = None
 ) -> BoardCalibration:
-    """The rig of the cameras that filmed a board.
+    """The rig of the cameras that recorded a board.
 
     Args:
         films: One a camera, all of one size.
         board: The one that they show.
-        floor_s: When the board lies on the floor, by the first film; None: found.
+        floor_s: When the board lies on the floor, by the first video; None: found.
 
     Raises:
-        CalibrationError: With the film, what it lacks, and what to do.
+        CalibrationError: With the video, what it lacks, and what to do.
     """
     places, size_px = corner_places(board), films[0].size_px
     rests = [rests_of(film) for film in films]
@@ -165,7 +165,7 @@ def _sights(moments: Moments, places: Vector) -> list[Sight]:
 
 
 def _resting(moments: Moments, floor_s: float | None) -> int | None:
-    """The rest at a time of the first film."""
+    """The rest at a time of the first video."""
     if floor_s is None:
         return None
     at = np.flatnonzero((moments.begin_s <= floor_s) & (floor_s <= moments.end_s))

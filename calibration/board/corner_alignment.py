@@ -24,7 +24,7 @@ ROUNDS: Final = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 30, 1e-4)
 def aligned(grey: NDArray[np.uint8], board: Board, px: Vector) -> Vector:
     """Corners, also those that were missed, where the print fits the picture best.
 
-    What looks for corners is drawn towards the markers beside them: on made-up films by 0.05 to
+    What looks for corners is drawn towards the markers beside them: on synthetic videos by 0.05 to
     0.5 px at squares of 20 px. The print has the markers too: 0.005 to 0.02 px are left.
 
     Args:

@@ -17,11 +17,11 @@ SHORTEST_S: Final = 0.35
 """A rest that is shorter may be the turn of a movement."""
 SHARED: Final = 0.5
 """Of the shorter of two cameras' rests, so much must be at one time: a board that is held for two
-seconds is found in films that began up to a second apart."""
+seconds is found in videos that began up to a second apart."""
 
 
 class Film(NamedTuple):
-    """What one film shows of a board."""
+    """What one video shows of a board."""
 
     name: str
     size_px: tuple[int, int]

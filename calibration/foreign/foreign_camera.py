@@ -37,7 +37,7 @@ class ForeignCamera(NamedTuple):
     t: Vector
     distortion: tuple[float, ...]
     quarters: int = 0
-    """By how many quarter turns clockwise its picture becomes upright, as far as that is told."""
+    """By how many quarter turns clockwise its picture becomes upright, as far as it is known."""
 
 
 def our_rig(cameras: Sequence[ForeignCamera], where: str, up: Up | None = None) -> Rig:
@@ -50,7 +50,7 @@ def our_rig(cameras: Sequence[ForeignCamera], where: str, up: Up | None = None) 
 
     Raises:
         CalibrationError: When they are none, or of pictures of several sizes, or no rig, or are
-            rolled so that their pictures do not tell which way is up.
+            rolled so that their pictures do not show which way is up.
     """
     if not cameras:
         raise CalibrationError(f"{where} holds no camera in a form that is known: {FORMS}")

@@ -16,7 +16,7 @@ def imported_rig(path: Path, wanted: tuple[str, ...] = (), up: Up | None = None)
     Args:
         path: In TOML, the text of Qualisys, or what OpenCV's FileStorage writes.
         wanted: Names of the cameras to keep, in this order; all when empty.
-        up: Which axis of its world is up; None: its pictures tell that.
+        up: Which axis of its world is up; None: taken from its pictures.
 
     Raises:
         CalibrationError: When the file is of no kind that is known, cannot be read, has no such

@@ -24,7 +24,7 @@ def read_opencv(path: Path) -> list[ForeignCamera]:
     """The cameras of a file: one (`camera_matrix`), or two (`M1`, `D1`, `M2`, `D2`, `R`, `T`).
 
     What stereo_calib writes into a second file is read from `extrinsics.*` beside it. The world is
-    that of the first camera: no floor is told.
+    that of the first camera: no floor is given.
 
     Raises:
         CalibrationError: When it cannot be read or misses a part.

@@ -10,7 +10,7 @@ from calibration.foreign.foreign_camera import ForeignCamera
 from common.rig.rig_file import CalibrationError
 
 UNIT: Final = 64.0
-"""Parts of a pixel in which focal lengths and middles are told."""
+"""Parts of a pixel in which focal lengths and centres are given."""
 MM: Final = 1000.0
 TO_OPENCV: Final = np.diag([1.0, -1.0, -1.0])
 """Turn of Qualisys's camera axes (y up, looking along -z) to OpenCV's."""

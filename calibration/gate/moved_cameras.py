@@ -22,14 +22,15 @@ MOVED_LEFT: Final = 0.05
 
 
 class MovedCameras(NamedTuple):
-    """What the viewers tell of how their cameras stand."""
+    """What the viewers report of how their cameras stand."""
 
     now: tuple[Shift, ...] = (AS_IT_WAS, AS_IT_WAS)
     """Shift of each camera's picture since the start of the run."""
     of_rig: tuple[Shift, ...] = (AS_IT_WAS, AS_IT_WAS)
     """Shift of each camera's picture when the rig in use was computed."""
     unconfirmed: tuple[ViewerNumber, ...] = ()
-    """Cameras whose place in it was told by their picture alone, as if turned on the spot."""
+    """Cameras whose place in it comes from their picture alone, as if they had turned on the
+    spot."""
 
     @property
     def moved(self) -> tuple[ViewerNumber, ...]:
@@ -43,7 +44,7 @@ class MovedCameras(NamedTuple):
 
     @property
     def doubtful(self) -> tuple[ViewerNumber, ...]:
-        """These, and those whose new place nobody has confirmed."""
+        """These, and those whose new place is not confirmed."""
         return tuple(sorted({*self.moved, *self.unconfirmed}))
 
     @property
@@ -97,7 +98,7 @@ def stays(old: Camera, new: Camera) -> bool:
 
 
 def turned_rig(rig: Rig, state: MovedCameras) -> Rig:
-    """The rig with its cameras turned where they stand, as their pictures tell."""
+    """The rig with its cameras turned where they stand, as their pictures show."""
     cameras = tuple(
         turned(camera, turn_since(camera, before, now))
         if far_px(now, before) > OTHERWISE_PX

@@ -50,7 +50,7 @@ class Stood(NamedTuple):
 
 
 class Person(NamedTuple):
-    """Somebody as the landmarks see them, who may err, but the same way after the move."""
+    """A person as the landmarks see them, who may err, but the same way after the move."""
 
     lengths: Vector
     """(8,) logarithms of LENGTHS, metres."""
@@ -78,7 +78,7 @@ def placed(
     """The rig with its moved cameras where the person has them; None where too little is seen.
 
     Args:
-        rig: With the moved cameras turned as their pictures tell.
+        rig: With the moved cameras turned as their pictures show.
         sighting: What both saw since.
         moved: One or both.
         late_s: How late view 2 is.

@@ -17,13 +17,13 @@ SAMPLES, APART_S = 40, 0.15
 """Number of instants that the agreement is computed from, and the seconds between two of them: the
 last six seconds."""
 FEWEST: Final = 8
-"""Fewer tell nothing."""
+"""Fewest samples that are judged."""
 FEWEST_FACINGS: Final = 5
 SURE: Final = 0.6
-"""Landmarks of a view that are less sure on average tell nothing of an instant."""
+"""Landmarks of a view that are less sure on average do not count in an instant."""
 SURE_FACING: Final = 0.85
 USUAL_M: Final = 1.75
-"""Stature of somebody whose ankles are this high: people differ by a centimetre there."""
+"""Stature of a person whose ankles are this high: people differ by a centimetre there."""
 NARROW: Final = 0.05
 """Squared sine of the angle between sight lines that are nearly one."""
 STANDS: Final = 0.4
@@ -42,10 +42,10 @@ performers and 16 synthetic people (docs/measurements.md)."""
 SUDDEN: Final = 0.2
 """What is left of the belief in a rig that is contradicted in the last second alone."""
 LEAST: Final = 0.05
-"""Share of the confidence that is left to a rig that nobody believes."""
+"""Share of the confidence that is left to a rig that is not believed."""
 
 SURE_JOINT: Final = 0.7
-"""Joints of which a view is less sure tell nothing of the motion."""
+"""Joints of which a view is less sure do not count in the motion."""
 FARTHEST_M: Final = 0.2
 """What is farther off counts so much: a joint that a view takes for another says nothing more."""
 
@@ -92,7 +92,7 @@ def step(state: State, rig: Rig, seen: TwoViews) -> State:
     told = agreement_of(np.array(samples), facings) if len(samples) >= FEWEST else None
     if told is not None and told.believed > SUDDEN:
         last = agreement_of(np.array(samples[-FEWEST:]), facings[-FEWEST:])
-        if last.believed <= SUDDEN:  # what was before tells nothing of how it is now
+        if last.believed <= SUDDEN:  # what was before says nothing of how it is now
             samples, facings, told = samples[-FEWEST:], facings[-FEWEST:], last
     return State(samples, facings, first.captured_s, told)
 

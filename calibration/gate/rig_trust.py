@@ -78,7 +78,7 @@ class Case(NamedTuple):
 
 def case_of(rig: Rig, sighting: Sighting, clock: Clock | None = None) -> Case | None:
     """A rig and the person before it, whose stature is as the rig has it; None where both views
-    see too little of anybody.
+    see too little of a person.
 
     Args:
         rig: Of both cameras.

@@ -32,7 +32,7 @@ def run_poles(path: Path, out: Path, replace: bool = False) -> Quality:
     Args:
         path: The file of poles.
         out: The file to write; its folder is made where it is not there.
-        replace: What stands there may be lost; it took somebody poles and an afternoon.
+        replace: What stands there may be lost; it may have taken an afternoon with poles.
 
     Raises:
         CalibrationError: When a file cannot be read or written, a length is in another unit, or

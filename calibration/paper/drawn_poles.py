@@ -1,4 +1,4 @@
-"""Poles as a camera should show them by what they told of it."""
+"""Poles as a camera should show them by what they gave of it."""
 
 import numpy as np
 

@@ -86,7 +86,7 @@ def fitted_lines(view: MarkerView, size: tuple[int, int]) -> Vector:
 
     Returns:
         (2, 3): a, b, c of a line a u + b v + c = 0, pixels, for the marker on the ground and that
-        on the wall; a^2 + b^2 = 1, so that the left side tells how far a point is off.
+        on the wall; a^2 + b^2 = 1, so that the left side is how far a point is off.
 
     Raises:
         CalibrationError: When the points of a marker make no line.

@@ -56,7 +56,7 @@ class Poles(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class CameraQuality(msgspec.Struct, frozen=True, kw_only=True):
-    """What the poles tell of one camera, with one standard deviation of each."""
+    """What the poles give of one camera, with one standard deviation of each."""
 
     name: str
     focal_px: float

@@ -29,19 +29,19 @@ from common.rig.rig_file import CalibrationError
 FEWEST: Final = 12
 """Moments in which both views must see the person."""
 FEW, FEW_EACH = 24, 6
-"""As many tell which start is right, and of each clip where there are several."""
+"""Number of moments that decide which start is right, and of each clip where there are several."""
 STARTS: Final = 3
 """As many of the likeliest starts with camera 2 on each side of camera 1 are followed: of walks all
-likely ones may be of mirror images (made-up rigs, seeds from 1000 on)."""
+likely ones may be of mirror images (synthetic rigs, seeds from 1000 on)."""
 YAW: Final = PLACE["yaw_2"]
 ELSEWHERE: Final = math.cos(math.radians(45.0))
 """Starts that end with camera 2 turned by less are one: two that are followed would end alike."""
 AT_FIRST: Final = 15
-"""Moments that tell where the person was at first."""
+"""Moments by which the person is placed at first."""
 NEAR, LEAST_MET = 3.0, 0.4
-"""Sigmas within which sight lines meet, and what share of the landmarks of a film must. Of made-up
-rigs and people 0.89 and more do (seeds from 1000 on), of two films of different people 0.52 to
-0.92, of joints that wander each for itself 0.11 at most (22 seeds)."""
+"""Sigmas within which sight lines meet, and what share of the landmarks of a video must. Of
+synthetic rigs and people 0.89 and more do (seeds from 1000 on), of two videos of different people
+0.52 to 0.92, of joints that wander each for itself 0.11 at most (22 seeds)."""
 
 
 def calibrated_by_person(
@@ -59,7 +59,7 @@ def calibrated_by_person(
         clocks: Of view 2 in each clip, where that is known.
 
     Raises:
-        CalibrationError: When both views see too little of anybody, or what fits no rig.
+        CalibrationError: When both views see too little of a person, or what fits no rig.
     """
     clocks = clocks or tuple(clock_of(one) for one in sightings)
     known = with_clocks(

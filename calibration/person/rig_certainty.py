@@ -13,10 +13,11 @@ from common.body.body import Vector
 STEP: Final = 1e-4
 """By which numbers are moved to see what moves with them."""
 UNSURE_FOCAL, UNSURE_TURN_DEG, UNSURE_FRAMES = 0.04, 2.0, 0.3
-"""Error bars, one sigma, above which something is not known: made-up rigs within them were right to
-5 % of focal length, 3 degrees and half a frame (seeds from 1000 on, `benchmarks/wild_rigs.py`)."""
+"""Error bars, one sigma, above which something is not known: synthetic rigs within them were right
+to 5 % of focal length, 3 degrees and half a frame (seeds from 1000 on,
+`benchmarks/wild_rigs.py`)."""
 CLOCK_FRAMES: Final = 0.15
-"""No clock is known better, frames: between frames joints are taken to go straight on (made-up
+"""No clock is known better, frames: between frames joints are taken to go straight on (synthetic
 rigs, seeds from 1000 on)."""
 
 

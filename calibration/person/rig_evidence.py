@@ -35,7 +35,7 @@ Sides = NDArray[np.bool_]
 
 
 class Known(NamedTuple):
-    """What is believed of rig and person before anybody is seen."""
+    """What is believed of rig and person before a person is seen."""
 
     mean: Vector
     """As a guess (`rig_guess.py`), where something is believed."""

@@ -27,13 +27,14 @@ UNSURE_FACING, SURE_FACING = 0.6, 0.85
 FEWEST_FACINGS: Final = 12
 UPRIGHT_DEG, ALL_WAYS = 1.5, 0.15
 """How far people lean who stand, and what share of it is left where they have faced all ways: a
-lean turns with whose it is (made-up rigs, seeds from 1000 on)."""
+lean turns with whose it is (synthetic rigs, seeds from 1000 on)."""
 TALL_SHARE: Final = 0.93
 """Whose neck is at least so far from the ankles, of the most that it is, stands upright."""
 FLOOR_M: Final = 0.02
 ON_THE_RIGHT, SIDE_EDGE = 2.45, 0.2
 """Sigmas against a camera 2 to the right of camera 1, and how abruptly: far away, mirror images are
-told apart by the facing alone, and where that is unsure the paper's rig has it on the left (C1)."""
+distinguished by the facing alone, and where that is unsure the paper's rig has it on the left
+(C1)."""
 FOCALS_ALIKE: Final = 0.3
 """How far the focal lengths of both cameras differ, mostly (of their logarithm)."""
 FLOOR_FRAMES, FACING_FRAMES = 6.0, 8.0

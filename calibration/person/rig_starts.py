@@ -31,7 +31,7 @@ MIDDLE_SHARE: Final = 0.65
 
 
 def known_of(width_px: int, stature_m: float, clips: int, fov_deg: float | None = None) -> Known:
-    """What is believed of a rig before anybody is seen.
+    """What is believed of a rig before a person is seen.
 
     Args:
         width_px: Of the pictures.

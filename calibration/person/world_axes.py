@@ -1,4 +1,4 @@
-"""Where the world begins that a rig without marks is told in."""
+"""Where the world begins in which a rig without marks is given."""
 
 from typing import Final
 
@@ -18,7 +18,7 @@ def published_rig(guess: Vector, size_px: tuple[int, int], person_m: Vector) -> 
     """The rig of a guess in its own world: x to the right in camera 1, y up from the floor, z
     towards camera 1, and the origin on the floor where both lines of sight cross.
 
-    The paper's rig is told so (C1), and every clip of one rig then has the same world. Where they
+    The paper's rig is given so (C1), and every clip of one rig then has the same world. Where they
     cross far from the person, or nowhere, the origin is under the person.
 
     Args:

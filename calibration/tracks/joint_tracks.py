@@ -13,12 +13,12 @@ from common.bus.messages import Landmarks, Report
 JOINTS: Final = len(JOINT_NAMES)
 _PELVIS, _NECK = (JOINT_NAMES.index(name) for name in ("pelvis", "neck"))
 LEAST_SURE: Final = 0.4
-"""A view whose landmarks are less sure on average tells nothing of a frame."""
+"""A view whose landmarks are less sure on average does not count in a frame."""
 MOST_FRAMES, LONGEST = 80, 360
 """As many of a clip are enough, for neighbours err alike; and of one that lasts long."""
 UPRIGHT: Final = math.cos(math.radians(60.0))
-"""Cosine of the lean of a trunk in the picture from which on nothing is told of a rig: who lies has
-no soles on the floor, and is seen less well."""
+"""Cosine of the lean of a trunk in the picture from which a frame does not count for a rig: who
+lies has no soles on the floor, and is seen less well."""
 ENOUGH_HZ: Final = 2.5
 """As many a second are looked at in a long clip."""
 
@@ -31,7 +31,7 @@ class JointTrack(NamedTuple):
     joints_px: NDArray[np.float64]
     """(n, 15, 2)"""
     confidence: NDArray[np.float64]
-    """(n, 15) in [0, 1]; 0 where nobody is seen."""
+    """(n, 15) in [0, 1]; 0 where no person is seen."""
     facing_deg: Vector
     """(n,) towards the camera 0, to the right of its picture 90."""
     facing_confidence: Vector
@@ -52,7 +52,7 @@ Row = tuple[float, Vector, Vector, float, float]
 
 
 def track_of(reports: Iterable[Report]) -> JointTrack:
-    """The landmarks of one view's reports; what is cut off, not seen or of somebody who lies has
+    """The landmarks of one view's reports; what is cut off, not seen or of a person who lies has
     confidence 0."""
     return track_of_rows([row_of(report) for report in reports])
 
@@ -83,13 +83,13 @@ def row_of(report: Report) -> Row:
 
 
 def is_upright(seen: Landmarks) -> bool:
-    """Whether a view sees the trunk of somebody who does not lie."""
+    """Whether a view sees the trunk of a person who does not lie."""
     across, down = np.subtract(seen.joints_px[_PELVIS], seen.joints_px[_NECK]).tolist()
     return bool(down >= UPRIGHT * math.hypot(across, down))
 
 
 def useful_times(sighting: Sighting, late_s: float) -> Vector:
-    """(n,) Moments of the first view at which both are sure of somebody, evenly thinned.
+    """(n,) Moments of the first view at which both are sure of a person, evenly thinned.
 
     Args:
         sighting: Both views.
@@ -144,7 +144,8 @@ def smoothed(track: JointTrack) -> JointTrack:
 
 
 def height_px(track: JointTrack) -> float:
-    """How high the crown stands above the ankles in most frames, pixels; 0 where nobody is seen."""
+    """How high the crown stands above the ankles in most frames, pixels; 0 where no person is
+    seen."""
     ankles = [JOINT_NAMES.index("l_ankle"), JOINT_NAMES.index("r_ankle")]
     crown = track.joints_px[:, JOINT_NAMES.index("head_top")]
     tall = np.linalg.norm(crown - track.joints_px[:, ankles].mean(axis=1), axis=-1)

@@ -76,7 +76,7 @@ class Clock(NamedTuple):
 
 
 UNSEEN: Final = Clock(0.0, None)
-"""Where both views show too little of anybody."""
+"""Where both views show too little of a person."""
 
 
 def clock_of(sighting: Sighting) -> Clock:

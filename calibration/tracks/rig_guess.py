@@ -15,9 +15,9 @@ NAMES: Final = (
     *("pitch_1", "roll_1", "height_1"),
     *("yaw_2", "pitch_2", "roll_2", "x_2", "height_2", "z_2"),
 )
-"""What a rig is told by. Camera 1 stands over the world's origin and has no yaw, so its sight goes
-towards -z; angles are radians, lengths metres. What is fitted besides follows in this order: the
-lengths of the person, then the lateness of view 2 in each clip, seconds."""
+"""The numbers that a rig is given by. Camera 1 stands over the world's origin and has no yaw, so
+its sight goes towards -z; angles are radians, lengths metres. What is fitted besides follows in
+this order: the lengths of the person, then the lateness of view 2 in each clip, seconds."""
 PLACE: Final = {name: n for n, name in enumerate(NAMES)}
 FOCALS: Final = slice(0, 2)
 FARTHEST: Final = 20.0

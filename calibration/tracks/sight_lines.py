@@ -11,7 +11,7 @@ from common.body.body import Vector
 Numbers = NDArray[np.float64]
 
 NEAREST_M: Final = 0.3
-"""Nobody is seen nearer to a camera."""
+"""No person is seen nearer to a camera."""
 
 NARROW: Final = 0.2
 """Squared sine of the angle between rays below which depths are not called less certain: views

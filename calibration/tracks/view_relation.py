@@ -10,7 +10,8 @@ Numbers = NDArray[np.float64]
 LINEAR: Final = 4
 """Of the terms, those that far cameras need: x and y in either view."""
 NEARLY_FAR: Final = 1e-4
-"""How dear the other terms are, which tell near from far: without a price they explain anything."""
+"""How dear the other terms are, which distinguish near from far: without a price they explain
+anything."""
 TRIED: Final = np.stack(
     np.meshgrid(*2 * [np.arange(-45.0, 46.0, 7.5)], np.arange(-0.3, 0.31, 0.1)), axis=-1
 ).reshape(-1, 3)

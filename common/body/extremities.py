@@ -1,4 +1,4 @@
-"""Nose, heels, toes and knuckles: where they are if nobody sees them, by the rest of the body.
+"""Nose, heels, toes and knuckles: where they are if no camera sees them, by the rest of the body.
 
 A foot stands square to its lower leg, toes a little out from where the hips face, and lies flat
 where it would else pass through the floor; a hand goes on along its forearm; the nose is ahead of

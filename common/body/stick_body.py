@@ -10,7 +10,7 @@ from common.body.proportions import THESIS_DIAMETERS, THESIS_RATIOS
 from common.compiled import compiled
 
 SIDES: Final = ("r", "l")
-"""r is on the left of the picture: where the right is of somebody who faces the camera (T10)."""
+"""r is on the left of the picture: where the right is of a person who faces the camera (T10)."""
 
 X, Y, STATURE, BREADTH, ANGLE, RATIO, GIRTH = 0, 1, 2, 3, 4, 14, 24
 """A stick pose: pelvis (px, rows down), stature (px), breadth of the trunk seen over its breadth

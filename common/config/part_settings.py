@@ -52,12 +52,12 @@ class SilhouetteSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True
     """How a person is told from the room (P3)."""
 
     empty_s: float = 0.5
-    """For how long a clip shows the empty room at first; if somebody stands there already, the
+    """For how long a clip shows the empty room at first; if a person stands there already, the
     background is estimated from the whole clip instead."""
     empty_frames: int = 0
     """What settings said before there was `empty_s`: so many frames, of 15 a second."""
     min_height_share: float = 0.15
-    """A region lower than this share of the picture is nobody."""
+    """A region lower than this share of the picture is no person."""
 
     def __post_init__(self) -> None:
         """Refuse what no run could mean."""
@@ -120,9 +120,9 @@ class PageSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     port: int = 8080
     """0: no page."""
     wait: bool = True
-    """A recorded clip begins when somebody looks at the page, or half a minute later."""
+    """A recorded clip begins when the page is opened, or half a minute later."""
     save_lost: bool = False
-    """The last 15 s become a run folder whenever somebody who was followed is lost from sight."""
+    """The last 15 s become a run folder whenever a person who was followed is lost from sight."""
     host: str = "127.0.0.1"
     """Where it listens. Beyond this machine, as at 0.0.0.0, a token in the printed address is asked
     for, and nothing hides what is sent."""

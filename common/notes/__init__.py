@@ -1,1 +1,1 @@
-"""A user's annotations of a film: what a single view does not show (T21, T22)."""
+"""A user's annotations of a video: what a single view does not show (T21, T22)."""

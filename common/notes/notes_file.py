@@ -81,8 +81,8 @@ def save_notes(path: Path, notes: Notes) -> None:
     """Write notes, whole or not at all; comments that are in the file stay.
 
     Raises:
-        NotesError: When they cannot be written: no space, no right, or somebody has spoilt the
-            file meanwhile. It is untouched then.
+        NotesError: When they cannot be written: no space, no right, or another program has spoilt
+            the file meanwhile. It is untouched then.
     """
     from tomlkit.exceptions import TOMLKitError
 

@@ -68,7 +68,7 @@ def silhouette_report(
 
     Args:
         viewer: Who saw it.
-        mask: (H, W), empty where nobody is seen.
+        mask: (H, W), empty where no person is seen.
         frame: Of that viewer.
         at_s: When it was taken, by either clock.
     """

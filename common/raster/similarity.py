@@ -14,8 +14,8 @@ def similarity(seen: Mask, drawn: Mask) -> float:
 
     S = exp(-p - n) (1 - p), where p is the share of their union that only `seen` covers and n the
     share that only `drawn` covers. S is not symmetric: what the model misses costs more than what
-    it adds. Two empty masks score 0: nobody is there (P9). An empty `seen` scores exp(-1)
-    whatever is drawn, so S alone never tells whether somebody is present (M25).
+    it adds. Two empty masks score 0: no person is there (P9). An empty `seen` scores exp(-1)
+    whatever is drawn, so S alone never tells whether a person is present (M25).
 
     The kernel computes the same from packed bits; this is what it is held against.
 

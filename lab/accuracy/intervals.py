@@ -1,4 +1,4 @@
-"""How far figures of accuracy might have come out otherwise, had other clips been filmed."""
+"""How far figures of accuracy might have come out otherwise, had other clips been recorded."""
 
 from collections.abc import Sequence
 from typing import Final

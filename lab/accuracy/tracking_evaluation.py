@@ -44,7 +44,7 @@ class Case(NamedTuple):
     performer: str
     posture: str
     bdp: Bdp | None
-    """The body as it was measured; None where nobody was seen."""
+    """The body as it was measured; None where no person was seen."""
     compared: Compared
     truth: Arrays
 

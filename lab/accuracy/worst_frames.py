@@ -24,7 +24,7 @@ MOST: Final = 10
 APART: Final = 10
 """Of this many frames of a clip in a row one is shown: those around it show the same fault."""
 SHOWN: Final = "4096x4096"
-"""Bound of the pictures: as they were filmed."""
+"""Bound of the pictures: as they were recorded."""
 HEIGHT_PX: Final = 480
 """Of a picture that is shown; small ones are enlarged, so that limbs can be told apart."""
 
@@ -131,7 +131,7 @@ def _shown(
 
 
 def _taken(view: View, index: int, decoders: Decoders) -> tuple[Image, float]:
-    """A frame of a video at HEIGHT_PX, and how many times as large as it was filmed."""
+    """A frame of a video at HEIGHT_PX, and how many times as large as it was recorded."""
     last = None
     for frame in recorded(view, 1, decoders.of[view.number]):
         last = frame.picture

@@ -10,7 +10,7 @@ from viewer.landmarks.landmark_window import PLANES
 JOINTS: Final = 15
 COLOURS: Final = PLANES - 1
 OUTLINED: Final = 16
-"""Channels of the finest stage, to which as many of the outline are added."""
+"""Channels of the finest stage, to which as many of the silhouette are added."""
 MIXED, DEEP, SUMMED, TOLD = 32, 576, 192, 96
 """Units: of the maps' way up, of the coarsest stage, of what is summed of it, of what is told."""
 
@@ -79,7 +79,7 @@ class LandmarkNetwork(nn.Module):
 
     All but `outline`, `maps` and `told` are the layers of MediaPipe Pose's lite network of
     landmarks (Bazarevsky et al. 2020): `photographed_start` fills them.
-    The outline joins at a quarter of the size, so that colours are seen as they were then.
+    The silhouette joins at a quarter of the size, so that colours are seen as they were then.
     """
 
     def __init__(self) -> None:

@@ -34,7 +34,7 @@ def _halved() -> torch.autocast:
 
 
 def loss(network: nn.Module, shown: list[Composite]) -> torch.Tensor:
-    """Cross entropies of maps, facing, whether somebody is there, and how sure the maps are."""
+    """Cross entropies of maps, facing, whether a person is there, and how sure the maps are."""
     with _halved():
         maps, told = network(planes_of(shown))
     maps, told = maps.float().flatten(2), told.float()

@@ -16,7 +16,7 @@ STEP: Final = 64
 
 def planes_of(shown: list[Composite]) -> torch.Tensor:
     """What the network sees of composites, (n, PLANES, SIDE, SIDE): larger than they were drawn,
-    as it sees most people who are filmed."""
+    as it sees most people who are recorded."""
     colours = _whole(np.stack([one.picture for one in shown]))
     outlines = _whole(np.stack([one.outline[..., None] for one in shown]))
     planes = torch.cat(

@@ -46,7 +46,7 @@ class Outcome(NamedTuple):
     fit: float = math.nan
     """Log-likelihood of a frame of what was named, on average."""
     fit_of_others: float = math.nan
-    """The same of the best posture but the truth: what would be named had nobody taught it."""
+    """The same of the best posture but the truth: what would be named had it not been learnt."""
     known: bool = True
     """The truth has a model."""
 
@@ -66,7 +66,7 @@ def recognise(
     """Train on some people and name what others do.
 
     Raises:
-        LearningError: When somebody is in both sets: that would measure memory.
+        LearningError: When a performer is in both sets: that would measure memory.
     """
     performers = sorted({recording.performer for recording in learnt_from})
     sequences: dict[str, list[Rows]] = {}
@@ -78,10 +78,10 @@ def recognise(
 
 
 def refuse_who_was_learnt_from(performers: Sequence[str], tested_on: Sequence[Recording]) -> None:
-    """Nobody is tested who was seen in training.
+    """People seen in training are not tested.
 
     Raises:
-        LearningError: When somebody is.
+        LearningError: When one is.
     """
     both = sorted({recording.performer for recording in tested_on} & set(performers))
     if both:

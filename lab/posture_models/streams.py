@@ -13,11 +13,11 @@ from recognizer.performance_judge import Event
 from recognizer.postures import DensityModel
 
 PAUSE_FRAMES: Final = (15, 60)
-"""How long somebody stands between two joined performances."""
+"""How long a person stands between two joined performances."""
 BRIDGE_FRAMES: Final = 8
 """Frames from the last pose of a performance to the stance of the next."""
 SWAY_DEG: Final = 1.0
-"""Of somebody who stands, with what the tracker errs by from frame to frame."""
+"""Of a person who stands, with what the tracker errs by from frame to frame."""
 SWAY_LEGS: Final = 0.002
 """Standard deviation of the root's sway in a stance, leg lengths."""
 LEFT: Final = 0.3
@@ -117,7 +117,7 @@ def joined(name: str, performances: Sequence[tuple[str, Rows]], seed: int) -> St
 def _pause(
     before: NDArray[np.float64], after: NDArray[np.float64], rng: np.random.Generator
 ) -> Rows:
-    """Somebody comes to stand as they will begin next."""
+    """A person comes to stand as they will begin next."""
     length = int(rng.integers(*PAUSE_FRAMES))
     way = np.clip((np.arange(length) + 1) / BRIDGE_FRAMES, 0.0, 1.0)[:, np.newaxis]
     change = after - before

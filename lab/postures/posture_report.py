@@ -78,7 +78,7 @@ def _margins(outcomes: Sequence[Outcome]) -> Facts:
 
 def _rejection(outcomes: Sequence[Outcome], least_fit: float) -> Facts:
     """How often what was taught gets no name, and how often each posture would get none, had
-    nobody taught it."""
+    it was not taught."""
     known = [one for one in outcomes if one.known]
     unknown = {}
     for name in postures_of(outcomes):

@@ -47,7 +47,7 @@ def jobs_of(given: Sequence[Recording], split: str, kind: Recognizer) -> Iterato
         kind: Of model.
 
     Raises:
-        TrainingError: When the split leaves nobody to learn from or to test on.
+        TrainingError: When the split leaves no performer to learn from or to test on.
     """
     parts = parts_of(given, split)
     if parts is None:
@@ -80,7 +80,7 @@ def parts_of(given: Sequence[Recording], split: str) -> Fold | None:
     """Whom to learn from and whom to test; None where everybody is tested in turn.
 
     Raises:
-        TrainingError: When that leaves nobody.
+        TrainingError: When that leaves no performer.
     """
     if split == EACH_IN_TURN:
         if len({one.performer for one in given}) < 2:
@@ -104,8 +104,8 @@ def refuse_in_vain(given: Sequence[Recording], split: str) -> None:
         split: As `jobs_of` takes it.
 
     Raises:
-        TrainingError: When it leaves nobody, or nobody shows what others were learnt from.
-        LearningError: When somebody is in training and in test.
+        TrainingError: When it leaves no performer, or none shows what others were learnt from.
+        LearningError: When a performer is in training and in test.
     """
     parts = parts_of(given, split)
     for learnt, tested in folds(given) if parts is None else [parts]:

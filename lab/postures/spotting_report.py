@@ -1,4 +1,4 @@
-"""How many performances are found in streams that nobody cuts, how soon, and what is false."""
+"""How many performances are found in uncut streams, how soon, and what is false."""
 
 from collections import defaultdict
 from collections.abc import Sequence

@@ -21,7 +21,7 @@ HELD_S: Final = 2.0
 HOME_M: Final = 0.25
 """Who stands as before has no joint farther from where it was, beside the pelvis."""
 LONGEST_S: Final = 12.0
-"""A take ends by then, and nobody is waited for longer to begin one."""
+"""A take ends by then, and a take that has not begun is not waited for longer."""
 SHORTEST_S: Final = 0.7
 
 STAND: Final = "stand so that the cameras see all of you, arms hanging"
@@ -47,7 +47,7 @@ class State(NamedTuple):
     count_s: float
     """How long is counted before each take."""
     doing: str = "waiting"
-    """waiting (for somebody who stands), counting, ready or moving."""
+    """waiting (for a person who stands), counting, ready or moving."""
     since_s: float = 0.0
     """When that began."""
     still_s: float | None = None
@@ -107,7 +107,7 @@ def _extent_m(joints_m: list[Vector]) -> float:
 
 
 def _is_home(before: Look, now: Look) -> bool:
-    """Whether somebody stands as before the take: arms held up, or a deep squat, are its middle."""
+    """Whether a person stands as before the take: arms held up, or a deep squat, are its middle."""
     assert before.joints_m is not None
     assert now.joints_m is not None
     moved = (now.joints_m - now.joints_m[0]) - (before.joints_m - before.joints_m[0])

@@ -73,7 +73,7 @@ def lifting_examples(seed: int) -> list[LiftingExample]:
 
 
 def _performed(someone: Person, rng: np.random.Generator) -> Posed:
-    """Somebody who moves, and some who fall."""
+    """A person who moves, and some who fall."""
     angles = course(someone, AT_LARGE if rng.random() < AT_LARGE_SHARE else ORDINARY, rng)
     leash = np.tile(rng.uniform(-ROOM_M, ROOM_M, 2), (len(angles), 1))
     if rng.random() >= FALL_SHARE:

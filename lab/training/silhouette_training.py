@@ -1,4 +1,4 @@
-"""The pixel classifier, trained on films of synthetic people whose masks are known."""
+"""The pixel classifier, trained on videos of synthetic people whose masks are known."""
 
 import multiprocessing
 import warnings
@@ -35,7 +35,7 @@ SIZE: Final = (320, 240)
 SHARES: Final = (1, 2)
 """What pictures are divided by: one network serves small ones too."""
 MOMENTS: Final = 14
-"""Frames of each that show somebody, one after the other."""
+"""Frames of each that show a person, one after the other."""
 EVERY: Final = 3
 """Of so many of them one is learnt from."""
 PIXELS: Final = 400
@@ -43,7 +43,7 @@ PIXELS: Final = 400
 FREE_EVERY: Final = 3
 """Every third person moves at random."""
 QUALITY: Final = (75, 96)
-"""Of the JPEG pictures that a film is made of; development clips have 86."""
+"""Of the JPEG pictures that a video is made of; development clips have 86."""
 ALIKE_SHARE, PIECE_SHARE = 0.6, 0.55
 """Share of the people who wear the room's colours, and of their clothes that do."""
 PEOPLE, ROOMS = 400_000, 300_000
@@ -107,7 +107,7 @@ def examples_of(seed: int) -> Examples:
 
 
 def films(seed: int, rng: np.random.Generator) -> list[LabelledFilm]:
-    """A performance as two cameras filmed it: the empty room, then somebody amid a movement."""
+    """A performance as two cameras recorded it: the empty room, then a person amid a movement."""
     rig, staging = default_rig(*SIZE), np.random.default_rng([seed, 77])
     someone = _dressed(person(PEOPLE + seed), room_of(ROOMS + seed, rig), staging)
     posture = POSTURES[seed % len(POSTURES)] if seed % FREE_EVERY else "free"
@@ -158,7 +158,7 @@ def _cut(moved: Motion, rng: np.random.Generator) -> Motion:
 
 
 def _small(film: LabelledFilm, share: int) -> LabelledFilm:
-    """The film at a share of its size; a small pixel is body where half of it is."""
+    """The video at a share of its size; a small pixel is body where half of it is."""
     width, height = SIZE[0] // share, SIZE[1] // share
     frames = [cv2.resize(each, (width, height), interpolation=cv2.INTER_AREA) for each in film[0]]
     masks = [

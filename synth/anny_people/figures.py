@@ -44,7 +44,7 @@ class Figure(NamedTuple):
 
 
 def anny_figure(rng: np.random.Generator) -> Figure:
-    """A body that nobody has.
+    """A body of impossible lengths.
 
     Args:
         rng: Source of all choices.

@@ -54,7 +54,8 @@ def tube_about(inside_m: NDArray[np.float64], reach_m: tuple[float, float], room
 
 
 def _radii(widths: Vector, ways: NDArray[np.float64]) -> Vector:
-    """How far a convex outline reaches in each way, (n,), that is so wide along each way (n, 2)."""
+    """How far a convex silhouette reaches in each way, (n,), that is so wide along each way (n,
+    2)."""
     cosine = ways @ ways.T
     reach = np.where(cosine > 0.1, widths[None] / np.maximum(cosine, 0.1), np.inf)
     return np.asarray(reach.min(axis=1))

@@ -1,4 +1,4 @@
-"""Falls: somebody stands and moves, tips over some way, lies and moves on, and gets up again."""
+"""Falls: a person stands and moves, tips over some way, lies and moves on, and gets up again."""
 
 from typing import Final, NamedTuple
 
@@ -59,7 +59,7 @@ def _eased(t: Vector, between_s: tuple[float, float]) -> Vector:
 
 
 class Fall(NamedTuple):
-    """How somebody falls."""
+    """How a person falls."""
 
     time_s: Vector
     """(n,) seconds of the frames since the motion began."""

@@ -26,7 +26,7 @@ RAMP_S: Final = 0.25
 LASTS_S: Final = {"free": FREE_S, "fall": FALL_S}
 """Motions that are no posture, and how long they take."""
 SWAY_HZ: Final = (0.35, 0.6, 1.1)
-"""Frequencies of the sway that nobody can hold back."""
+"""Frequencies of the sway that cannot be suppressed."""
 SWAY_SHARE: Final = {
     "foot": 0.0,
     "elbow": 0.7,
@@ -48,7 +48,7 @@ class Act(NamedTuple):
 
 
 class Motion(NamedTuple):
-    """What somebody does in a clip, frame by frame."""
+    """What a person does in a clip, frame by frame."""
 
     posture: str
     fps: float
@@ -68,7 +68,7 @@ class Motion(NamedTuple):
 
     @property
     def present(self) -> NDArray[np.bool_]:
-        """Whether somebody is in the room, (n,)."""
+        """Whether a person is in the room, (n,)."""
         return self.phase != EMPTY
 
 
@@ -197,7 +197,7 @@ def opened(moved: NDArray[np.float64], phase: NDArray[np.uint8], fps: float) -> 
 
 
 def sway(s: Style, t: Vector, rng: np.random.Generator) -> NDArray[np.float64]:
-    """The sway that nobody can hold back, (n, 27)."""
+    """The sway that cannot be suppressed, (n, 27)."""
     columns = []
     for name in ANGLES:
         share = next((v for key, v in SWAY_SHARE.items() if key in name), 0.6)

@@ -1,4 +1,4 @@
-"""Free motion: somebody turns, steps, bends and reaches, every joint through its range."""
+"""Free motion: a person turns, steps, bends and reaches, every joint through its range."""
 
 from typing import Final, NamedTuple
 

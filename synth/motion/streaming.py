@@ -27,7 +27,7 @@ from synth.person.people import Person, Style, take_style
 Angles = NDArray[np.float64]
 
 PAUSE_S: Final = (0.7, 1.8)
-"""How long somebody stands before and after what they do in a pause."""
+"""How long a person stands before and after what they do in a pause."""
 IDLE_S: Final = (1.5, 4.0)
 IDLE_SHARE: Final = 0.6
 """Of the pauses that hold more than standing."""

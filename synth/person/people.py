@@ -33,7 +33,7 @@ class Style(NamedTuple):
     toe: float
     lean: float
     jit: float
-    """Size of the sway that nobody can hold back."""
+    """Size of the sway that cannot be suppressed."""
     headp: float
     swing: float
     """Size of arm swings; 1 is the middle."""

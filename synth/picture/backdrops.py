@@ -1,4 +1,4 @@
-"""What stands behind somebody in a picture: rooms, and heaps of shapes that no room has."""
+"""What stands behind a person in a picture: rooms, and heaps of shapes that no room has."""
 
 from typing import Final
 

@@ -1,4 +1,4 @@
-"""Synthetic people before backdrops, lit, hidden and filmed as badly as cheap cameras do it."""
+"""Synthetic people before backdrops, lit, hidden and recorded as badly as cheap cameras do it."""
 
 from collections.abc import Callable
 from typing import Final, NamedTuple
@@ -14,20 +14,20 @@ from synth.picture.picture_examples import SIDE_PX, PictureExample
 
 Floats = NDArray[np.float32]
 UNKNOWN: Final = 128
-"""Of an outline that is not told."""
+"""Of a silhouette that is not told."""
 NOBODY_SHARE: Final = 0.04
 """Of the pictures: how many show the backdrop alone."""
 ALIKE_SHARE, PLAIN_SHARE = 0.15, 0.2
 """How many backdrops have a colour of the person's, or hardly any pattern."""
 BEHIND_SHARE, BEFORE_SHARE = 0.15, 0.04
-"""How many pictures show somebody else behind, or before the person."""
+"""How many pictures show another person behind or before the person."""
 SHADOW_SHARE, HIDDEN_SHARE, BORDER_SHARE = 0.35, 0.12, 0.12
 """How many show the person's shadow, something before the person, the picture's border."""
 COARSEST: Final = 1.3
 """Logarithm of how many times coarser than the window a picture may be."""
 COARSE_SHARE, SMEARED_SHARE, GREY_SHARE, JPEG_SHARE = 0.6, 0.15, 0.25, 0.3
 UNTOLD_SHARE, RAGGED_SHARE = 0.3, 0.15
-"""How many outlines are not told, or are ragged, holed, and hold what is no person."""
+"""How many silhouettes are not told, or are ragged, holed, and hold what is no person."""
 TURN_DEG, LARGER, BESIDE_PX = 6.0, 0.12, 0.021 * SIDE_PX
 FINE_TINT, EXPOSURE = 0.07, 0.25
 """Standard deviations of the logarithms of colours' gains, and of all other ones."""
@@ -43,9 +43,9 @@ class Composite(NamedTuple):
     joints_px: Floats
     """(15, 2) JOINT_NAMES order."""
     inside: NDArray[np.bool_]
-    """(15,) which of them are in the picture; none where nobody is."""
+    """(15,) which of them are in the picture; none where no person is."""
     facing: Floats
-    """(2,) as in PictureExample; 0 where nobody is."""
+    """(2,) as in PictureExample; 0 where no person is."""
     stature_px: float
     nobody: bool
 
@@ -128,7 +128,7 @@ def _behind(
 
 
 def _with_other(picture: Floats, other: PictureExample, rng: np.random.Generator) -> Floats:
-    """Somebody else over the picture, of another size, elsewhere."""
+    """Another person over the picture, of another size, elsewhere."""
     warp = np.eye(2, 3, dtype=np.float32) * np.float32(rng.uniform(0.4, 1.1))
     warp[:, 2] = rng.uniform(-SIDE_PX / 2, SIDE_PX / 2, 2)
     body = cv2.warpAffine(other.body, warp, (SIDE_PX, SIDE_PX)).astype(np.float32)
@@ -242,7 +242,7 @@ def _developed(picture: Floats, rng: np.random.Generator) -> NDArray[np.uint8]:
 
 
 def _told(outline: NDArray[np.uint8], rng: np.random.Generator) -> NDArray[np.uint8]:
-    """The outline as the network is shown it."""
+    """The silhouette as the network is shown it."""
     told, chance = outline * np.uint8(255), rng.random()
     if chance < UNTOLD_SHARE:
         told[:] = UNKNOWN

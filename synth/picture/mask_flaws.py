@@ -1,4 +1,4 @@
-"""What is wrong with silhouettes that are cut out of a film."""
+"""What is wrong with silhouettes that are cut out of a video."""
 
 from typing import Final, Literal, NamedTuple
 
@@ -44,7 +44,7 @@ def flaw(n: int, rng: np.random.Generator) -> Flaw:
 
 
 def spoilt(mask: NDArray[np.uint8], flaw: Flaw, i: int) -> NDArray[np.uint8]:
-    """A silhouette as one that was cut out of a film: with a shadow, too thick, too thin."""
+    """A silhouette as one that was cut out of a video: with a shadow, too thick, too thin."""
     if not mask.any():
         return mask
     rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))

@@ -48,7 +48,7 @@ class PictureExample(NamedTuple):
     body: NDArray[np.uint8]
     """(SIDE_PX, SIDE_PX, 4) blue, green, red, times coverage; coverage."""
     outline: NDArray[np.uint8]
-    """(SIDE_PX, SIDE_PX) 1 inside of the silhouette, as it is cut out of a film."""
+    """(SIDE_PX, SIDE_PX) 1 inside of the silhouette, as it is cut out of a video."""
     joints_px: NDArray[np.float32]
     """(15, 2) JOINT_NAMES order; also beyond the picture."""
     facing: NDArray[np.float32]

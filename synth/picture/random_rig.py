@@ -17,7 +17,7 @@ HEIGHTS_M, FOCALS = (0.8, 1.4), (1.0, 1.4)
 APART_DEG, RISE_M, ROLL_DEG = (50.0, 130.0), (0.5, 2.6), 6.0
 """Of cameras that stand anywhere."""
 FRONT_SHARE, ASIDE_SHARE, ABOUT_DEG = 0.3, 0.25, 15.0
-"""Shares of the first cameras about somebody that stand about before them, and beside them; the
+"""Shares of the first cameras about a person that stand about before them, and beside them; the
 deviation of these."""
 HEIGHTS_PX: Final = (240, 240, 180, 427)
 """Of pictures 320 wide."""
@@ -41,7 +41,7 @@ FURTHER_AIM_M, FURTHER_FOCALS, FURTHER_ROLL_DEG = (0.9, 1.05), (0.92, 1.0), 1.0
 def random_rig(
     rng: np.random.Generator, slanted_share: float, distances_m: tuple[float, float]
 ) -> Rig:
-    """Two cameras before somebody.
+    """Two cameras before a person.
 
     Args:
         rng: Source of all choices.
@@ -89,7 +89,7 @@ def _further(n: int, size: tuple[int, int], rig: Rig, rng: np.random.Generator) 
 
 
 def rig_about(rng: np.random.Generator, middle_m: Vector) -> Rig:
-    """Two cameras anywhere about somebody who faces +z at first.
+    """Two cameras anywhere about a person who faces +z at first.
 
     Args:
         rng: Source of all choices.
@@ -121,7 +121,7 @@ def _about(
     level: bool,
     rng: np.random.Generator,
 ) -> Camera:
-    """A camera that looks at the middle of somebody, or level."""
+    """A camera that looks at the middle of a person, or level."""
     far_m = rng.uniform(*DISTANCES_M)
     place = _on_circle(at_deg, far_m, rng.uniform(*(LEVEL_M if level else HUNG_M)))
     focal_px = size[0] * rng.uniform(*WIDTHS) * float(np.clip(far_m / AT_M, *HOW_FAR))

@@ -1,7 +1,7 @@
 """Joints as a network of landmarks shows them in a picture, and how sure it is: without pictures.
 
 How far off joints are at each confidence, how long an error stays, how surely joints are seen that
-something hides: all as measured of the shipped network on made-up people in pictures.
+something hides: all as measured of the shipped network on synthetic people in pictures.
 """
 
 from typing import Final, NamedTuple
@@ -70,8 +70,8 @@ variable is so large."""
 FACING: Final = (3.0, 8.0)
 """Degrees that the facing is off: all through, and over time."""
 TURNED, LEGS_EXCHANGED, UNTOLD = 0.06, 0.08, 0.1
-"""Shares of the performances in which somebody is for a while seen the other way round, only legs
-are exchanged, or the picture hardly tells where somebody faces."""
+"""Shares of the performances in which a person is for a while seen the other way round, only legs
+are exchanged, or the picture hardly tells where a person faces."""
 ALL_THROUGH: Final = 0.3
 """Share of those who are seen the other way round all through."""
 STRETCH: Final = (5, 40)

@@ -35,12 +35,12 @@ YAW_DEG: Final = (4.0, 4.0, 15.0)
 """Standard deviations that the whole body is turned by about the vertical, one of them for a
 performance."""
 TURNING_DEG: Final = 180.0
-"""How far somebody who turns goes round, to either side."""
+"""How far a person who turns goes round, to either side."""
 THICKER, LONGER, LOOSER = 0.06, 0.02, (0.5, 2.0)
 """How bodies differ beyond those of `person`: standard deviations of what a thickness and a length
 are multiplied by, and the range of what the room in their clothes is."""
 ROOM_M: Final = 0.6
-"""How far from the middle somebody stands."""
+"""How far from the middle a person stands."""
 JITTER_PX: Final = 0.25
 """Standard deviation of a silhouette's place."""
 ALONE_SHARE, GAP_SHARE, DROP_SHARE = 0.15, 0.15, 0.03
@@ -85,7 +85,8 @@ class Manner(NamedTuple):
     lean_deg: float
     """Standard deviation of that."""
     wider: float
-    """Share of those who lean and lift their legs farther aside than anybody in a free motion."""
+    """Share of those who lean and lift their legs farther aside than people do in a free
+    motion."""
     slanted: float
     """Share of the rigs that stand anywhere, look down, are rolled."""
     distances_m: tuple[float, float]
@@ -210,7 +211,7 @@ def _seen(
     flaws: tuple[Flaw, Flaw],
     rng: np.random.Generator,
 ) -> list[Mask]:
-    """Both silhouettes of an instant, as they are cut out of a film."""
+    """Both silhouettes of an instant, as they are cut out of a video."""
     masks = []
     for camera, wrong in zip(rig.cameras, flaws, strict=True):
         jitter_px = rng.normal(0.0, JITTER_PX, 2)

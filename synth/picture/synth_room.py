@@ -19,7 +19,7 @@ LIGHT_REACH_M: Final = 2.3
 """How far from the middle of the room the lamps' pictures reach."""
 MIDDLE_M: Final = (0.0, 0.9, 0.0)
 OVERHEAD_M: Final = 2.3
-"""What is higher gets no shadow: the ceiling is not behind anybody."""
+"""What is higher gets no shadow: the ceiling is not behind any person."""
 BESIDE_M: Final = 1.0
 """What is not that far ahead of a lamp gets no shadow: it is beside or behind it."""
 SELF_SHADE: Final = 0.01

@@ -61,7 +61,7 @@ def track(
     --resume, and gives the same poses as without a stop.
 
     Ends with exit code 3 where a clip's body is believed in less than half of its frames with a
-    person, nobody is found, or a video could not be read to its end.
+    person, no person is found, or a video could not be read to its end.
 
     Example: tritrack track clips/*/ --mode paper --out runs
     """
@@ -149,7 +149,7 @@ def single(
     What is stopped goes on where it was with the same command and --resume.
 
     Ends with exit code 3 where a video's body is believed in less than half of its frames with a
-    person, nobody is found, or a video could not be read to its end.
+    person, no person is found, or a video could not be read to its end.
 
     Example: tritrack single dance.mp4 --out runs
     """

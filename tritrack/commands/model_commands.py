@@ -62,8 +62,8 @@ def train(
     """Learn postures from clips or runs.
 
     With --what, a network is learnt from synthetic people instead: poses of silhouettes
-    (proposals) or of landmarks (lifting), silhouettes, landmarks; landmarks of films of your own,
-    too: --film VIDEO, as often as there are films.
+    (proposals) or of landmarks (lifting), silhouettes, landmarks; landmarks of videos of your own,
+    too: --film VIDEO, as often as there are videos.
 
     One posture more, beside those that a model knows: tritrack teach.
 
@@ -131,7 +131,7 @@ def _train_network(
 
 
 def _teach_on_films(films: list[Path], teacher: str, out: Path, json_wanted: bool) -> None:
-    """Teach the shipped network of landmarks by what another pose estimator sees in films."""
+    """Teach the shipped network of landmarks by what another pose estimator sees in videos."""
     refuse_without("train", "torch", "onnx", "onnxscript", "anny")
     from lab.film_lessons.film_training import teach_on_films
 
@@ -165,9 +165,9 @@ def teach(
 ) -> None:
     """Teach a model one posture more, by three takes or more.
 
-    They are filmed, or done before cameras (--live). Says whether the takes agree, and which other
-    posture it is nearest to. With --again the posture is one that the model knows: name new takes
-    to replace it, old and new ones to add.
+    They are recorded, or done before cameras (--live). Says whether the takes agree, and which
+    other posture it is nearest to. With --again the posture is one that the model knows: name new
+    takes to replace it, old and new ones to add.
 
     Example: tritrack teach star_jump take1/ take2/ take3/ --out mine.npz
     """
@@ -247,7 +247,7 @@ def evaluate_spotting(
     mode: ModeName = None,
     json_wanted: JsonWanted = False,
 ) -> None:
-    """Find performances in streams that nobody cuts.
+    """Find performances in uncut streams.
 
     Says how many are found, how soon, and how many of what is found are none.
 

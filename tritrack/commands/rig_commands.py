@@ -135,7 +135,7 @@ def board(
 
 
 def _calibrate(videos: list[Path], shown: "Shown", out: Path, json_wanted: bool) -> None:
-    """Calibrate by films of the board, and tell how well they agree."""
+    """Calibrate by videos of the board, and tell how well they agree."""
     from runtime.offline.rig_of_boards import calibrate_by_videos
 
     quality, drawn = calibrate_by_videos(videos, shown, out, console)
@@ -214,7 +214,7 @@ def poles(
 
 
 def _kept(points: Path) -> Path:
-    """The file in which a page keeps points, refused before anybody clicks where it cannot."""
+    """The file in which a page keeps points, refused before a click where it cannot."""
     writable_file(points)
     return points
 

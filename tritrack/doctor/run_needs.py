@@ -12,7 +12,8 @@ from runtime.live.free_ports import refuse_held_endpoint, refuse_held_metrics, r
 from tritrack.doctor.installation import Finding, refused
 
 LEAST_BYTES: Final = 1 << 30
-"""An hour of both outlines at 320x240, 9.6 kB each, fifteen times a second, recorded: as much."""
+"""An hour of both silhouettes at 320x240, 9.6 kB each, fifteen times a second, recorded: as
+much."""
 ZONE_S: Final = 86_400.0
 """Dates of unpacked files may be of another time zone."""
 
@@ -42,7 +43,7 @@ def _looked(what: str, look: Callable[[], str | None]) -> Finding:
 
 
 def _pictures(settings: Settings) -> str:
-    """Each camera or film is opened."""
+    """Each camera or video is opened."""
     clip = open_clip(settings)
     views = ", ".join(
         f"view {view.number}: {view.source_size[0]}x{view.source_size[1]}, {view.fps:.4g} a second"

@@ -24,7 +24,7 @@ HINTS: Final = {
 }
 KINDS: Final[tuple[Kind, ...]] = ("floor", "wall")
 START: Final[tuple[Kind, ...]] = ("floor",) * 4 + ("wall",) * 4
-"""Four on each: of three nobody can tell which one is off."""
+"""Four on each: of three it cannot be seen which one is off."""
 NOMINAL_M: Final = 4.0
 """Where cameras are drawn from above: markers do not tell how far they stand."""
 DRAWN_DEG: Final = 40.0

@@ -1,4 +1,4 @@
-"""The pictures of the marking page: stills of each film, or a camera's newest picture."""
+"""The pictures of the marking page: stills of each video, or a camera's newest picture."""
 
 import math
 import threading
@@ -22,7 +22,7 @@ from common.video.pictures import Decoded, DecoderDied, Image, Size, Source, Wan
 from runtime.terminal import bar
 
 MOST_STILLS: Final = 100
-"""Of each film, evenly spread: markers stand still, and a pole that is carried about rests."""
+"""Of each video, evenly spread: markers stand still, and a pole that is carried about rests."""
 BOUND: Final = (1920, 1080)
 """Pictures are shown, and their points told, no larger."""
 JPEG_QUALITY: Final = 92
@@ -41,11 +41,11 @@ class Reader(Protocol):
 
 
 class Film(NamedTuple):
-    """Stills of a recorded film."""
+    """Stills of a recorded video."""
 
     jpegs: tuple[bytes, ...]
     frames: tuple[int, ...]
-    """Their places in the film."""
+    """Their places in the video."""
 
     def jpeg(self, place: int) -> bytes | None:
         """A still, None where there is none."""

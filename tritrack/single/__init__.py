@@ -1,1 +1,1 @@
-"""Films of one camera: followed, drawn, retouched."""
+"""Videos of one camera: followed, drawn, retouched."""

@@ -1,4 +1,4 @@
-"""The files of a followed film that are looked at or animated: curves, background, BVH."""
+"""The files of a followed video that are looked at or animated: curves, background, BVH."""
 
 from importlib.util import find_spec
 from pathlib import Path

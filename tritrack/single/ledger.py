@@ -111,7 +111,7 @@ def inputs(
     """How many sticky inputs say `values` in the frames where that is wanted.
 
     An input holds on while the values agree with it; frames of no value ("" or 0) agree with
-    anything; where a frame disagrees that nobody asked about, the input is given up.
+    anything; where a frame disagrees that was not asked about, the input is given up.
     """
     holds: str | float | None = None
     count = 0

@@ -13,7 +13,7 @@ from common.raster.silhouette_report import silhouette_report
 MAX_PIXELS: Final = 1 << 30
 """No sequence is larger: 50,000 frames at 160x120."""
 RATE_HZ: Final = 25.0
-"""Such files name no rate; the databases were filmed for television."""
+"""Such files name no rate; the databases were recorded for television."""
 SHAPE: Final = "__shape"
 """What follows a sequence's name in the name of the array that tells its unpacked shape."""
 

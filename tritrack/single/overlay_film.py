@@ -1,4 +1,5 @@
-"""The overlay of a run as a film: what was followed, drawn on the pictures that it was found in."""
+"""The overlay of a run as a video: what was followed, drawn on the pictures that it was found
+in."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -26,12 +27,12 @@ STANDS_S: Final = 5.0
 def write_overlay(found: Followed, path: Path, decoder: Decoder, tell: Tell) -> Film:
     """Write the overlay beside the other files of a run.
 
-    A film is written at one rate, and lasts as long as the one that was followed: where that one's
+    A video is written at one rate, and lasts as long as the one that was followed: where that one's
     rate varies, pictures are shown several times, or left out.
 
     Args:
         found: What one camera gave.
-        path: Of the film, without a suffix.
+        path: Of the video, without a suffix.
         decoder: Reads the video once more.
         tell: Hears which share of the frames is drawn.
 
@@ -53,11 +54,11 @@ def write_overlay(found: Followed, path: Path, decoder: Decoder, tell: Tell) -> 
 
 
 def shown_times(time_s: Vector, period_s: float) -> NDArray[np.int64]:
-    """How often a film of one rate shows each picture, (n,).
+    """How often a video of one rate shows each picture, (n,).
 
     Args:
         time_s: (n,) when each was taken, increasing.
-        period_s: From a picture to the next in the film.
+        period_s: From a picture to the next in the video.
     """
     places = np.rint((time_s - time_s[0]) / period_s).astype(np.int64)
     most = max(1, round(STANDS_S / period_s))

@@ -45,7 +45,7 @@ from tritrack.single.overlay_film import write_overlay
 from viewer.room.background_source import LOOKED_AT, background_of_film
 
 PASSES: Final = ("learning the room", "cutting out", "posing", "drawing")
-"""What is done with all frames of a film, one after the other."""
+"""What is done with all frames of a video, one after the other."""
 UNUSABLE: Final = (
     *(SettingsError, ClipError, DecoderDied, Undecodable),
     *(MaskFileError, NotesError, CannotResume, OtherRun),
@@ -59,7 +59,7 @@ class Given(NamedTuple):
     notes: Path | None = None
     """Instead of the notes beside each."""
     background: Path | None = None
-    """A picture of the scene without anybody."""
+    """A picture of the scene without a person."""
     resume: bool = False
     """Go on with what was cut short, and leave out what is done."""
     force: bool = False
@@ -175,7 +175,7 @@ def job_of(path: Path, given: Given, settings: Settings) -> Job:
 
 
 def _run_of(job: Job) -> RunOf:
-    """Its films; a clip folder's second one is none of its."""
+    """Its videos; a clip folder's second one is none of its."""
     films = [view.source for view in footage_of(job.settings)][:1]
     return run_of("single", [str(job.path)] if job.masks is not None else films)
 
@@ -200,7 +200,7 @@ def follow(
 ) -> Facts:
     """Follow one video and write its run folder; what the summary tells of it, and the overlay.
 
-    Poses come first: whatever happens to the pictures and films, these are kept.
+    Poses come first: whatever happens to the pictures and videos, these are kept.
 
     Raises:
         ClipError, DecoderDied: When it cannot be used.

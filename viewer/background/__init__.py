@@ -1,1 +1,1 @@
-"""The picture without people: learnt from an empty opening, a plate, or a busy film."""
+"""The picture without people: learnt from an empty opening, a plate, or a busy video."""

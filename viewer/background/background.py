@@ -1,4 +1,4 @@
-"""The background: what every pixel shows while nobody is there (section 1; thesis 3.1.2)."""
+"""The background: what every pixel shows while no person is there (section 1; thesis 3.1.2)."""
 
 from collections.abc import Sequence
 from typing import Final, NamedTuple
@@ -17,12 +17,12 @@ FLOOR: Final = (1.0, 2.5)
 """Least spread of brightness and of colour, grey levels: rounding, and the colour that compression
 smears around a person, which no empty frame can show."""
 STRIDE: Final = 8
-"""Every so many rows and columns tell how bright a picture is."""
+"""Distance of the rows and columns from which a picture's brightness is taken, pixels."""
 LEAST_LIGHT: Final = np.float32(0.01)
 """No frame is taken to be darker, as a share of the background: a camera that is covered, or whose
-lights are out, tells nothing of what is there."""
+lights are out, shows nothing of what is there."""
 DARK: Final = 0.2
-"""In less than this share of its light a frame tells little of the room, and noise most."""
+"""In less than this share of its light a frame shows little of the room and mostly noise."""
 GAIN_SAMPLES: Final = 1500.0
 """About how many pixels, on a grid, are asked for the light: a median of so many is steady."""
 
@@ -37,7 +37,7 @@ class Background(NamedTuple):
     uncertain: NDArray[np.bool_]
     """(H, W) True where the background was never seen and is guessed."""
     low: Floats
-    """(H, W, 3) least grey levels that were seen while nobody was there (W4)."""
+    """(H, W, 3) least grey levels that were seen while no person was there (W4)."""
     high: Floats
     """(H, W, 3) greatest values in the frames that the background was learnt from."""
     step: Floats
@@ -134,7 +134,7 @@ def light_gain(frame: Image, background: Floats) -> Floats:
         background: (H, W, 3) grey levels.
 
     Returns:
-        (3,) factors, 1 where the background is too dark to tell, LEAST_LIGHT at least.
+        (3,) factors, 1 where the background is too dark to say, LEAST_LIGHT at least.
     """
     height, width = frame.shape[:2]
     stride = max(1, int(np.sqrt(height * width / GAIN_SAMPLES)))

@@ -18,7 +18,7 @@ steepness, otherwise more: 0.05-0.41 and 0.49-2.5 on every third development cli
 
 
 def is_still(opening: Overlaid) -> bool:
-    """Whether nobody moves in the opening frames: who runs through them leaves no contour."""
+    """Whether no person moves in the opening frames: who runs through them leaves no contour."""
     return not any(large_regions(off).any() for off in opening.moving if off.any())
 
 
@@ -26,7 +26,7 @@ def is_empty_opening(opening: Overlaid, sample: Iterable[Image]) -> bool:
     """Whether the opening frames show the background without a person.
 
     What differs between the opening and a later frame has its contour in the picture that holds
-    the person: only in the later one if the opening is empty, in both if somebody stood there.
+    the person: only in the later one if the opening is empty, in both if a person stood there.
 
     Args:
         opening: The first frames of a clip.

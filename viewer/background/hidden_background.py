@@ -1,4 +1,4 @@
-"""The background of a clip in which somebody hides the same place all through."""
+"""The background of a clip in which a person hides the same place all through."""
 
 from collections.abc import Sequence
 from typing import Final
@@ -21,18 +21,18 @@ DARK, BRIGHT = np.float32(0), np.float32(255)
 def learn_behind(
     frames: Sequence[Image], body: Mask, covered: Sequence[NDArray[np.uint8]]
 ) -> Background:
-    """The background from pictures of which it is known where somebody hides it in most.
+    """The background from pictures of which it is known where a person hides it in most.
 
     It is what frames show there that is not what hides it, and comes near what is drawn from both
     sides, or is seen while they are elsewhere. Where hardly a frame shows that, nothing is known of
     it; but whatever is there is the body: so the background is taken to be as far from that as it
-    can be, since a guess may as well be the body's colour. When they leave, the landmarks tell what
+    can be, since a guess may as well be the body's colour. When they leave, the landmarks show what
     is left there to be a thing.
 
     Args:
         frames: Pictures from all over a clip, of one size.
         body: (H, W) of whoever their median shows.
-        covered: Of each frame (H, W), 1 where somebody may be.
+        covered: Of each frame (H, W), 1 where a person may be.
     """
     even = even_light(frames)
     centre = median(even)

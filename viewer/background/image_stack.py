@@ -15,7 +15,7 @@ Bytes = NDArray[np.uint8]
 LUMA: Final = np.array([0.114, 0.587, 0.299], np.float32)
 """Shares of blue, green and red in brightness (ITU-R BT.601)."""
 CHANGES: Final = np.float32(12.0)
-"""Grey levels of brightness that tell a change from noise while no model stands."""
+"""Grey levels of brightness that distinguish a change from noise while no model stands."""
 
 
 class Overlaid(NamedTuple):

@@ -1,4 +1,4 @@
-"""Where in the median picture of a busy clip somebody may stand (3.1.2)."""
+"""Where in the median picture of a busy clip a person may stand (3.1.2)."""
 
 from typing import Final
 
@@ -17,25 +17,25 @@ MOST_FLICKER: Final = 2 * CHANGES
 QUIET: Final = 0.25
 """A pixel flickers by what it stays within for this share of the frames."""
 ROAMS: Final = 0.55
-"""Somebody whose middle moves sideways by this share of the height of where they are leaves every
+"""A person whose middle moves sideways by this share of the height of where they are leaves every
 pixel for most of the clip: 0.5 to 2.0 for who crosses a picture, up to 0.5 on the spot."""
 RARELY: Final = 0.1
 """Who is in the median picture and roams leaves the spot for more of the frames than this; what
 changes less often there is background that arms pass, whose own edges are taken for contours."""
 LEAST_BLOB: Final = 0.2
-"""Less than this share of the largest change at a place does not tell where the middle is."""
+"""Less than this share of the largest change at a place does not show where the middle is."""
 AROUND: Final = 0.25
 """Share of the picture's height in which contours speak for each other: half a person."""
 
 
 def occupied(even: Floats, centre: Floats, away: Floats, stays: bool) -> Mask:
-    """(H, W) True in the hulls of the places where somebody may stand in the median picture.
+    """(H, W) True in the hulls of the places where a person may stand in the median picture.
 
     Args:
         even: (n, H, W, 3) frames under one light.
         centre: (H, W, 3), their median.
         away: (n, H, W), how far they are from it.
-        stays: What stays put counts; otherwise only what its contours tell.
+        stays: What stays put counts; otherwise only what its contours show.
     """
     flicker = np.minimum(NOISES * np.quantile(away, QUIET, axis=0), MOST_FLICKER)
     changed = np.stack([large_regions(off > CHANGES + flicker) for off in away])

@@ -1,4 +1,4 @@
-"""A new background in the middle of a run, from frames that show nobody."""
+"""A new background in the middle of a run, from frames that show no person."""
 
 from common.bus.control_messages import Answer, Command
 from common.bus.inbox import Inbox
@@ -23,7 +23,7 @@ class Learning:
         self._frames: list[Image] | None = None
 
     def step(self, picture: Image, fault: CameraFault) -> tuple[Background | None, Answer | None]:
-        """One frame: the new background, if it is known now, and what to tell of it.
+        """One frame: the new background, if it is known now, and what to report of it.
 
         Frames in which something moves, or that show no scene, are no background, and the old one
         stays.

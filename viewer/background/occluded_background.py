@@ -1,4 +1,4 @@
-"""The background of a busy clip: what nobody hides, and what is never uncovered (3.1.2)."""
+"""The background of a busy clip: what no person hides, and what is never uncovered (3.1.2)."""
 
 from collections.abc import Sequence
 from typing import Final
@@ -39,14 +39,14 @@ ALIKE: Final = 2.5
 
 
 class NoSegments(RuntimeError):
-    """The library that segments pictures is missing: the text tells the cure."""
+    """The library that segments pictures is missing: the text names the cure."""
 
 
 def learn_uncovered(frames: Sequence[Image]) -> Background:
-    """The background from pictures in which somebody may be always in view.
+    """The background from pictures in which a person may be always in view.
 
     What does not change is background, unless it is hidden: a place where what changes stays put
-    has somebody in the median picture, and so has one where the contours of what changes belong
+    has a person in the median picture, and so has one where the contours of what changes belong
     to the median as much as to the frames. There the median is believed only in segments of one
     colour that reach beyond the place. What is left is drawn from both sides, and gives way to
     what frames show if enough of them come near that; else the pixel was never uncovered and
@@ -77,14 +77,14 @@ def learn_uncovered(frames: Sequence[Image]) -> Background:
 
 
 def learn_around(frames: Sequence[Image], covered: Sequence[NDArray[np.uint8]]) -> Background:
-    """The background from pictures of which it is known where somebody is.
+    """The background from pictures of which it is known where a person is.
 
-    A pixel shows the room in the frames in which nobody is near it; where there are none, it is
+    A pixel shows the room in the frames in which no person is near it; where there are none, it is
     drawn from both sides.
 
     Args:
         frames: Pictures from all over a clip, of one size.
-        covered: Of each (H, W), 1 where somebody may be.
+        covered: Of each (H, W), 1 where a person may be.
     """
     even, hidden = even_light(frames), np.stack(covered) > 0
     shown = np.count_nonzero(~hidden, axis=0)
@@ -112,7 +112,7 @@ def _shown_median(even: Floats, hidden: Mask, shown: NDArray[np.int64]) -> Float
 def estimated_of(
     off: Floats, away: Floats, background: Floats, held: Mask, uncertain: Mask
 ) -> Background:
-    """A background with how far frames stay from its centre while nobody changes them."""
+    """A background with how far frames stay from its centre while no person changes them."""
     calm = np.where((away < CHANGES)[..., None], off, 0.0).astype(np.float32)
     spread = spread_of(squares(calm), len(off))
     if held.any() and not held.all():

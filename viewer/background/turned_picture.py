@@ -19,7 +19,7 @@ ROUNDS: Final = 8
 EDGE_PX: Final = 0.35
 """How far an edge may be from where it was turned to."""
 SOBEL: Final = 8.0
-"""What a slope of 1 a pixel is told as."""
+"""How a slope of 1 a pixel is written."""
 
 Places = NDArray[np.float64]
 

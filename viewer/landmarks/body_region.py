@@ -37,7 +37,7 @@ LONG_BONES: Final = tuple(
         *((f"{s}_knee", f"{s}_ankle", "lower_leg") for s in _SIDES),
     )
 )
-"""Near and far end, and length in statures: the least foreshortened tells the stature."""
+"""Near and far end, and length in statures: the least foreshortened gives the stature."""
 _TRUNK: Final = [_AT[name] for name in ("l_shoulder", "r_shoulder", "r_hip", "l_hip")]
 _HANDS: Final = [(_AT[f"{s}_elbow"], _AT[f"{s}_wrist"]) for s in _SIDES]
 _ANKLES: Final = [_AT[f"{s}_ankle"] for s in _SIDES]

@@ -1,4 +1,4 @@
-"""Our 15 joints, and which way the person faces, out of the 17 points that pose estimators tell."""
+"""Our 15 joints, and which way the person faces, out of the 17 points that pose estimators give."""
 
 import math
 from typing import Final
@@ -18,7 +18,7 @@ TOP_SHARES: Final = (0.10, 0.26, -0.35)
 """How the top of the head lies from the middle of the ears: the same two shares, and that of the
 way from there to the nose."""
 NOSE_WEIGHT: Final = 8.0
-"""The nose tells with so much the facing: it stands out of the head by an eighth of what shoulders
+"""Weight of the nose in the facing: it stands out of the head by an eighth of what shoulders
 and hips together are wide."""
 
 _PAIRS: Final = {
@@ -42,7 +42,7 @@ def fifteen(points: Floats) -> Floats:
 
 
 def fifteen_shares(shares: Floats) -> Floats:
-    """The same of numbers that tell how well points are seen, (17,): the worse of a pair counts."""
+    """The same of numbers that say how well points are seen, (17,): the worse of a pair counts."""
     pairs = {
         name: min(shares[POINT[one]], shares[POINT[other]]) for name, (one, other) in _PAIRS.items()
     }

@@ -32,7 +32,7 @@ FURTHEST_PX: Final = 1e5
 NUMBERED: Final = re.compile(r"(\d+)(?:_keypoints)?\.json")
 
 FACING: Final = [POINT[name] for name in ("nose", "l_ear", "l_shoulder", "r_shoulder")]
-"""The points that tell which way somebody faces."""
+"""The points that show which way a person faces."""
 
 Person = NDArray[np.float64]
 """(24, 3): columns and rows by our convention in the video's pixels, and scores: BODY_POINTS, then
@@ -77,7 +77,7 @@ class KeypointFiles:
         self.odd: tuple[str, ...] = (told,) if short else ()
 
     def people(self, decoded: Decoded, wait_s: float) -> tuple[Landmarks, ...]:  # noqa: ARG002
-        """Everybody whom the file of a frame tells; nobody where there is no such file."""
+        """All people in the file of a frame; none where there is no such file."""
         people = self._frames.get(decoded.index, ())
         return tuple(_landmarks_of(self._as_worked_on(person)) for person in people)
 
@@ -87,12 +87,12 @@ class KeypointFiles:
 
 
 def numbered(folder: Path) -> dict[int, Path]:
-    """The files of a folder by the frames that they tell of.
+    """The files of a folder by the frames that they are of.
 
     Their names end in the frame's number, from 0 on; from 1 on where there is no 0.
 
     Raises:
-        SettingsError: When there are none or too many, or a name tells no frame of its own.
+        SettingsError: When there are none or too many, or a name has no frame number of its own.
     """
     found: dict[int, Path] = {}
     for path in sorted(folder.glob("*.json")):
@@ -112,7 +112,7 @@ def numbered(folder: Path) -> dict[int, Path]:
 
 
 def people_of(path: Path) -> list[Person]:
-    """Everybody whom a file tells of with at least one point.
+    """All people of whom a file has at least one point.
 
     Raises:
         SettingsError: When it cannot be read or is no such file.

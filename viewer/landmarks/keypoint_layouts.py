@@ -38,7 +38,7 @@ hands the knuckles of index and little finger."""
 
 def extremity_points(points: NDArray[np.floating]) -> NDArray[np.float64]:
     """The places of EXTREMITY_NAMES, (7, 3), among the points of any layout, (n, 3), whose last
-    column tells how sure each is; what a layout lacks is sure to 0."""
+    column says how sure each is; what a layout lacks is sure to 0."""
     found = np.zeros((len(EXTREMITY_NAMES), 3))
     for i, at in enumerate(EXTREMITIES[len(points)]):
         if at:

@@ -18,21 +18,21 @@ if TYPE_CHECKING:
 CELLS: Final = 48
 """Cells of a joint's map, each way."""
 BINS: Final = 16
-"""Directions that the facing is told apart in."""
+"""Number of directions that a facing is classified into."""
 OWN: Final = "own"
 """What settings call the network in the package."""
 SHIPPED: Final = Path(__file__).with_name("landmarks.onnx")
 LEAST: Final = 1e-12
 """Of a share of a map, where two looks are joined."""
 Seen = tuple[NDArray[np.float32], NDArray[np.float32]]
-"""Logits of a look: maps (15, CELLS, CELLS), and what is told beside them (BINS + 1 + 15,)."""
+"""Logits of a look: maps (15, CELLS, CELLS), and the other outputs (BINS + 1 + 15,)."""
 
 
 @lru_cache(maxsize=4)
 def opened(network: Path = SHIPPED) -> "InferenceSession":
     """A network, on one core.
 
-    onnxruntime would report its use to its maker, and keep a file for it, unless it is told not to
+    onnxruntime would report its use to its maker, and keep a file for it, unless it is set not to
     before it is imported: nothing leaves this machine.
 
     Args:

@@ -16,11 +16,11 @@ SIDE: Final = 192
 FRAMED: Final = 1.25
 """Side of the window over the longer side of what it is to hold."""
 PLANES: Final = 4
-"""Blue, green, red, outline."""
+"""Blue, green, red, silhouette."""
 CORNERS: Final = (math.sqrt(2.0) - 1.0) / 2.0
 """How far the corners of a turned square reach beyond it, in sides."""
 GREY: Final = 128
-"""Of an outline that is not known: what the network takes for 0."""
+"""Of a silhouette that is not known: what the network takes for 0."""
 
 Planes = NDArray[np.uint8]
 Places = NDArray[np.float64]
@@ -58,12 +58,12 @@ def window_about(places: Places, turn_deg: float = 0.0, margin: float = 0.0) -> 
 
 
 def window_of(box: Box) -> Window:
-    """The window of an outline, as the picture stands."""
+    """The window of a silhouette, as the picture stands."""
     return window_about(np.array([(box.left, box.top), (box.right + 1.0, box.bottom + 1.0)]))
 
 
 def turned_window_of(mask: Mask, turn_deg: float) -> Window:
-    """The window of an outline (H, W) that is not empty."""
+    """The window of a silhouette (H, W) that is not empty."""
     pixels = np.asarray(cv2.findNonZero(mask.view(np.uint8)), np.float64).reshape(-1, 2)
     return window_about(pixels + 0.5, turn_deg)
 
@@ -79,7 +79,7 @@ def planes_of(picture: Image, mask: Mask | None, window: Window, side: int = SID
 
     Args:
         picture: (H, W, 3)
-        mask: (H, W) the outline; None: not known.
+        mask: (H, W) the silhouette; None: not known.
         window: Of the picture.
         side: Pixels across.
     """

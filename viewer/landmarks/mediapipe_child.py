@@ -55,7 +55,7 @@ def opened() -> "Pose":
 
 
 def looked(pose: "Pose", picture: NDArray[np.uint8]) -> NDArray[np.float32] | None:
-    """The 33 points of the person in a picture (H, W, 3) BGR; None where nobody is seen.
+    """The 33 points of the person in a picture (H, W, 3) BGR; None where no person is seen.
 
     Returns:
         (33, 3): column and row in pixels, and visibility.

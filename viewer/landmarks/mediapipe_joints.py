@@ -17,7 +17,7 @@ about (docs/measurements.md)."""
 
 
 def landmarks_of(points: NDArray[np.float32], shown: Size, working: Size) -> Landmarks:
-    """What MediaPipe's points tell.
+    """Our landmarks of MediaPipe's points.
 
     Args:
         points: (33, 3): column and row in the picture that it was shown, and visibility.

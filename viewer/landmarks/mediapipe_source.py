@@ -44,7 +44,8 @@ def refuse_where_missing() -> None:
 
 
 class MediaPipe:
-    """Asks a child for each frame of one view; without it the run goes on, and that is told once.
+    """Asks a child for each frame of one view; without it the run goes on, and that is reported
+    once.
 
     The child starts with this, and ends with it, with the viewer, or when it breaks.
     """
@@ -101,7 +102,7 @@ class MediaPipe:
             raise SettingsError(f"MediaPipe does not work here ({answer.text}): {INSTALL}")
 
     def people(self, decoded: Decoded, wait_s: float) -> tuple[Landmarks, ...]:
-        """Whom MediaPipe sees in a frame, one or nobody; see `OutsideSource`."""
+        """Whom MediaPipe sees in a frame, one or no person; see `OutsideSource`."""
         if self._child is None:
             return ()
         try:

@@ -1,4 +1,4 @@
-"""What tells landmarks from outside the viewer's step, a process or files, and of whom."""
+"""Sources of landmarks outside of the viewer's step, a process or files, and whose they are."""
 
 from typing import Protocol
 
@@ -24,16 +24,17 @@ class OutsideSource(Protocol):
 
         Args:
             decoded: The frame, with a picture of the size `large`, if that is one.
-            wait_s: How long to wait for the answer; nobody is there when it does not come.
+            wait_s: How long to wait for the answer; no person is there when it does not come.
         """
 
 
 def nearest_landmarks(people: tuple[Landmarks, ...], box: Box | None) -> Landmarks | None:
-    """Whose a report tells: who fills the outline's box best; where there is none, who is largest.
+    """The person of a report: the one who fills the silhouette's box best; without a silhouette the
+    largest.
 
     Args:
         people: Whom a source outside sees in a picture.
-        box: Of the outline in it.
+        box: Of the silhouette in it.
     """
     if not people:
         return None

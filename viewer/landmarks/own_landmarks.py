@@ -27,12 +27,13 @@ from viewer.silhouette.silhouette import Seen
 SURE: Final = 0.5
 """Landmarks that are surer than this on average are not looked for elsewhere too."""
 LEAST: Final = 0.3
-"""Where no outline says that somebody is there, they must be surer than this on average."""
+"""Where no silhouette says that a person is there, they must be surer than this on average."""
 EMPTY: Final = 0.08
-"""Who is not sure, and so probably nobody, is nobody, outline or not: in rooms whose doors, lights
-and things move, 0.1 % of outlines with somebody made up are, and 88 % of those with nobody."""
+"""Who is not sure, and so probably no person, is no person, silhouette or not: in rooms whose
+doors, lights and things move, 0.1 % of silhouettes with a person made up are, and 88 % of those
+with no person."""
 COUNTS: Final = 0.15
-"""Joints that are surer than this tell where the next window is."""
+"""Confidence from which a joint counts for the place of the next window."""
 MARGIN: Final = 0.06
 """How far a body reaches beyond its joints, in sides of what holds them."""
 SHORT: Final = 0.1
@@ -75,21 +76,20 @@ SUREST: Final = attrgetter("surety")
 def own_landmarks(
     picture: Image, seen: Seen, before: Landmarks | None, eye: LandmarkModel = LandmarkModel()
 ) -> Landmarks | None:
-    """What the network makes of a picture; None where it sees nobody.
+    """What the network makes of a picture; None where it sees no person.
 
-    It looks where the outline is, in a window as upright as the trunk was in the frame before.
-    Where it is not sure there it also looks, without the outline, where it saw somebody the frame
-    before, or in all of the picture. A trunk that leans in its window is looked at again, upright:
-    photographs taught the network such. Of made-up people who lean by 60 to 180 degrees 60 % of the
-    joints are within a tenth of the stature as they are, 74 % looked at again, 80 % once the lean
-    is known, and the facing about the trunk is less than 45 degrees off in 97 % of those who are
-    seen from a side.
-    The surest look is believed; where that shows nobody, but an outline, of a door or of light,
-    confidences are 0.
+    It looks where the silhouette is, in a window as upright as the trunk was in the frame before.
+    Where it is not sure there it also looks, without the silhouette, where it saw a person the
+    frame before, or in all of the picture. A trunk that leans in its window is looked at again,
+    upright: photographs taught the network such. Of synthetic people who lean by 60 to 180 degrees
+    60 % of the joints are within a tenth of the stature as they are, 74 % looked at again, 80 %
+    once the lean is known, and the facing about the trunk is less than 45 degrees off in 97 % of
+    those who are seen from a side. The surest look is believed; where that shows no person, but a
+    silhouette, of a door or of light, confidences are 0.
 
     Args:
         picture: (H, W, 3) the working picture.
-        seen: The outline in it.
+        seen: The silhouette in it.
         before: Of the frame before.
         eye: Which network looks, and how often.
     """
@@ -103,13 +103,14 @@ def own_landmarks(
 
 
 def found_anywhere(picture: Image) -> tuple[Landmarks, float]:
-    """Somebody in a picture (H, W, 3) of which nothing is known, and how probably nobody is."""
+    """A person in a picture (H, W, 3) of which nothing is known, and how probably no person is."""
     best = _set_upright(picture, _search(picture, TWICE), TWICE)
     return _told(best), best.nobody
 
 
 def found_between(picture: Image, corners_px: Places, margin: float) -> tuple[Landmarks, float]:
-    """Somebody in a picture whose joints lie about between two corners, and how probably nobody is.
+    """A person in a picture whose joints lie about between two corners, and how probably no person
+    is.
 
     Args:
         picture: (H, W, 3)
@@ -137,8 +138,8 @@ def _surest(picture: Image, seen: Seen, known: Window | None, eye: LandmarkModel
 
     Args:
         picture: (H, W, 3)
-        seen: The outline in it.
-        known: About where somebody was the frame before.
+        seen: The silhouette in it.
+        known: About where a person was the frame before.
         eye: How it is looked at.
     """
     looks = []
@@ -173,7 +174,7 @@ def _look(picture: Image, mask: Mask | None, window: Window, eye: LandmarkModel)
 
 
 def _search(picture: Image, eye: LandmarkModel) -> _Look:
-    """Somebody anywhere: first in all of the picture, then closer."""
+    """A person anywhere: first in all of the picture, then closer."""
     far = _look(picture, None, whole(picture.shape), eye)
     window = _about(far.joints_px, tuple(far.confidence))
     return far if window is None else _look(picture, None, window, eye)
@@ -190,7 +191,7 @@ def _about(joints_px: Places, confidence: tuple[float, ...]) -> Window | None:
 
 
 def _turn_deg(joints_px: Places, sure: Places) -> float:
-    """How far a trunk leans, clockwise; 0 where it is little, or cannot be told.
+    """How far a trunk leans, clockwise; 0 where it is little, or not known.
 
     Args:
         joints_px: (15, 2)

@@ -53,7 +53,7 @@ def facade_arms(
     """Shoulder theta_Z, then theta_Y and elbow, of the right and then the left arm (P30, P31).
 
     theta_X keeps its value: the facade view cannot see it. The elbow is searched with the
-    forearm outwards positive, then told with the theta_Y that makes flexion positive (C5).
+    forearm outwards positive, then given with the theta_Y that makes flexion positive (C5).
     """
     for i, side in enumerate(SIDES):
         outward = 90.0 if side == "r" else -90.0

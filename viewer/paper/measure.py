@@ -45,7 +45,7 @@ class FacadeShape(NamedTuple):
 def opening_measure(
     mask: Mask, report: Report, guide: Guide | None, facing: Facing
 ) -> tuple[Measure | None, str]:
-    """What the opening posture tells, or why this is not it; nothing once measured."""
+    """What the opening posture gives, or why this is not it; nothing once measured."""
     assert report.box is not None
     if guide is not None and guide.measured:
         return None, ""

@@ -58,7 +58,7 @@ class State(NamedTuple):
     vote: Facing
     """What the view takes itself for."""
     found: Found | None = None
-    """At the frame before; None: it had nobody."""
+    """At the frame before; None: it had no person."""
 
 
 def init(
@@ -74,7 +74,7 @@ def step(state: State, report: Report, mask: Mask, guide: Guide | None) -> tuple
 
     Args:
         state: From `init` or the step before.
-        report: Of somebody.
+        report: Of a person.
         mask: (H, W) the silhouette.
         guide: What the integrator made of the frame before; None at the start.
     """

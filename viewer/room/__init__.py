@@ -1,1 +1,1 @@
-"""What a view shows, held against its landmarks: the room without people, and the outline."""
+"""What a view shows, held against its landmarks: the room without people, and the silhouette."""

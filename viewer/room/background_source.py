@@ -33,7 +33,7 @@ from viewer.room.room_people import AROUND, are_sure, looked_at
 from viewer.room.standing_body import standing
 
 SAMPLE = 40
-"""How many frames at most, spread over a clip, tell whether its opening is empty."""
+"""How many frames at most, spread over a clip, decide whether its opening is empty."""
 LOOKED_AT = 1500
 """How many frames of a clip are looked at for that: a long recording is judged by its start."""
 
@@ -41,7 +41,7 @@ PEOPLE = 20
 """How many of these frames are searched for people, where the opening is in doubt."""
 
 FILM_OPTION = "--background"
-"""Where the one command that follows films, `tritrack single`, is given an empty picture."""
+"""Where the one command that follows videos, `tritrack single`, is given an empty picture."""
 
 LEFT_HIDDEN = 0.01
 """Who stays on a spot hides 2 to 20 % of the picture all through a clip, who roams up to 0.4 %."""
@@ -54,11 +54,11 @@ class Opening(NamedTuple):
     odd: str
     """What is odd about how that is known; "" if nothing is."""
     somebody: Landmarks | None
-    """Of the first frame, where all of the clip was looked at and tells who is there."""
+    """Of the first frame, where all of the clip was looked at and shows who is there."""
 
 
 class FilmBackground(NamedTuple):
-    """The picture of one camera without people, all through a film."""
+    """The picture of one camera without people, all through a video."""
 
     background: Background
     patches: list[Patch]
@@ -71,8 +71,8 @@ def opening_of_view(view: View, settings: SilhouetteSettings, decoder: Reader) -
     """What a view shows without the person, and who is seen first.
 
     Args:
-        view: A recorded file's, or a camera's: nobody is taken to be before that one now.
-        settings: How long nobody is in view at first.
+        view: A recorded file's, or a camera's: no person is taken to be before that one now.
+        settings: How long no person is in view at first.
         decoder: Reads the file; left at its start.
 
     Raises:
@@ -93,16 +93,17 @@ def of_clip(
 ) -> Opening:
     """The background of a clip, what is odd about how that is known, and who is seen first.
 
-    Where contours say that nobody is in the opening, that is the room. They do take furniture for
+    Where contours say that no person is in the opening, that is the room. They do take furniture
+    for
     somebody: then the network of landmarks is asked, and the backgrounds of both cases are made,
-    the likelier first, until one has the outlines that the landmarks in later frames ask for. Of
+    the likelier first, until one has the silhouettes that the landmarks in later frames ask for. Of
     what changes and, where the network is sure, of who hides the same place all through, one is
     estimated each: the better.
 
     Args:
         opening: The first frames.
         sample: Frames from all over the clip.
-        settings: How a person is told from the room.
+        settings: How a person is distinguished from the background.
         view: Is named in what is odd.
     """
     opening = lit(opening)
@@ -142,7 +143,7 @@ def _estimated(view: View, setting: str) -> str:
 def opening_of_run(
     view: View, settings: SilhouetteSettings, decoder: Decoder, kept: Path | None
 ) -> Opening:
-    """The same in a live run, where a viewer may be started again with somebody before its camera.
+    """The same in a live run, where a viewer may be started again with a person before its camera.
 
     Args:
         view: As above; likewise `settings`, `decoder`.
@@ -193,15 +194,15 @@ def _name_of(view: View) -> str:
 
 
 def background_of_film(view: View, settings: SilhouetteSettings, decoder: Reader) -> FilmBackground:
-    """The background of a film, from all over it where that shows enough, and what changes.
+    """The background of a video, from all over it where that shows enough, and what changes.
 
-    Light changes through a film, and with it more than a gain can follow; an empty opening knows
-    nothing of that. It is kept where somebody stays on the spot. Things that come to rest or leave
+    Light changes through a video, and with it more than a gain can follow; an empty opening knows
+    nothing of that. It is kept where a person stays on the spot. Things that come to rest or leave
     are patches on it, also on a background that was given.
 
     Args:
-        view: Of the film; likewise `settings`, `decoder`: as for `opening_of_view`.
-        settings: How long nobody is in view at first.
+        view: Of the video; likewise `settings`, `decoder`: as for `opening_of_view`.
+        settings: How long no person is in view at first.
         decoder: Reads the file; left at its start.
     """
     background, odd, _ = opening_of_view(view, settings, decoder)

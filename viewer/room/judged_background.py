@@ -18,19 +18,21 @@ from viewer.silhouette import silhouette
 Maker = Callable[[], Background]
 
 GOOD: Final = 0.6
-"""An outline that has as much of the body, and hardly anything else, needs no other to be tried."""
+"""A silhouette that has as much of the body, and hardly anything else, needs no other to be
+tried."""
 BESIDE: Final = 0.08
-"""Statures around the body in which an outline may lie: clothes, hair, landmarks a bit off."""
+"""Statures around the body in which a silhouette may lie: clothes, hair, landmarks a bit off."""
 SURELY: Final = 0.05
-"""By so much one that is less likely must fit better: in made-up rooms that was the better one."""
+"""By so much one that is less likely must fit better: in synthetic rooms that was the better
+one."""
 FAR: Final = 0.2
-"""Statures from the body at which an outline is somebody else's, or a thing's."""
+"""Statures from the body at which a silhouette is another person's, or an object's."""
 JUDGED: Final = 5
 """Frames, spread over those that were looked at."""
 
 
 class Judged(NamedTuple):
-    """A background, and how well the outlines in it fit the landmarks."""
+    """A background, and how well the silhouettes in it fit the landmarks."""
 
     background: Background
     worth: float
@@ -43,14 +45,15 @@ def best_of(
     looks: Sequence[Look],
     settings: SilhouetteSettings,
 ) -> Background:
-    """The background whose outlines fit the landmarks best; the first group that is good is taken.
+    """The background whose silhouettes fit the landmarks best; the first group that is good is
+    taken.
 
     Args:
         groups: Make the backgrounds, the likeliest first; of a group all are made, and the best
             stands for it.
         pictures: Of the clip, (H, W, 3) each.
         looks: What the network makes of each.
-        settings: How a person is told from the room.
+        settings: How a person is distinguished from the background.
     """
     shown = [pair for pair in zip(pictures, looks, strict=True) if pair[1].is_somebody]
     told = shown[:: max(1, -(-len(shown) // JUDGED))]
@@ -78,7 +81,7 @@ def _first(tried: Iterable[Judged], good: float) -> Judged:
 def _worth(
     background: Background, told: Sequence[tuple[Image, Look]], settings: SilhouetteSettings
 ) -> float:
-    """How well outlines in a background fit the landmarks, in [0, 1], the mean over frames."""
+    """How well silhouettes in a background fit the landmarks, in [0, 1], the mean over frames."""
     state = silhouette.init(background, settings, DEFAULT)
     worth = []
     for picture, look in told:
@@ -89,9 +92,9 @@ def _worth(
 
 
 def fit(mask: Mask, look: Look) -> float:
-    """Share of the body that an outline (H, W) covers, times the share of it that is body's.
+    """Share of the body that a silhouette (H, W) covers, times the share of it that is body's.
 
-    What is far from the body does not count: that is told from it in every frame.
+    What is far from the body does not count: that is separated from it in every frame.
     """
     outline = cv2.bitwise_and(mask.view(np.uint8), body_region(look.landmarks, mask.shape, FAR))
     body = body_region(look.landmarks, mask.shape, 0.0)

@@ -1,4 +1,5 @@
-"""An outline held against the landmarks: what is far from the body goes, what is missing comes."""
+"""A silhouette held against the landmarks: what is far from the body goes, what is missing
+comes."""
 
 from typing import Final, NamedTuple
 
@@ -20,45 +21,46 @@ from viewer.landmarks.body_region import (
 from viewer.silhouette.silhouette import Seen, seen_of
 
 TRUSTED: Final = 0.5
-"""Landmarks that are surer than this on average are held against an outline."""
+"""Landmarks that are surer than this on average are held against a silhouette."""
 SURE: Final = 0.6
-"""A bone both of whose ends are surer than this is in the outline, or is missing there."""
+"""A bone both of whose ends are surer than this is in the silhouette, or is missing there."""
 FAR: Final = 0.2
-"""Statures from the body at which an outline is a thing's: a door's, a shadow's."""
+"""Statures from the body at which a silhouette is a thing's: a door's, a shadow's."""
 TIGHT: Final = 0.06
-"""Statures around the body that are left of an outline that holds one."""
+"""Statures around the body that are left of a silhouette that holds one."""
 REACH: Final = 0.1
 """Statures from a bone's axis to the farthest of the body: a hand, a hem."""
 MUCH: Final = 0.15
 """Share of a silhouette far from the body, from which that part is an object. Less may be an arm
 that the landmarks place elsewhere, and stays."""
 COVERED: Final = 0.35
-"""A bone with less of its axis in the outline is missing there."""
+"""A bone with less of its axis in the silhouette is missing there."""
 FEW: Final = 1
-"""No more than this is missing of whole outlines: a shank or a forearm whose side was mistaken."""
+"""No more than this is missing of whole silhouettes: a shank or a forearm whose side was
+mistaken."""
 ALONG: Final = 9
 """Places along a bone where that is asked."""
 STRIDE: Final = 3
-"""Of an outline's rows and columns so many are passed over between two that are looked at."""
+"""Of a silhouette's rows and columns so many are passed over between two that are looked at."""
 _ENDS: Final = np.array([(near, far) for near, far, _ in BONES])
 
 
 class Corrected(NamedTuple):
-    """An outline, as the landmarks let it stand."""
+    """A silhouette, as the landmarks let it stand."""
 
     seen: Seen
     things: Bytes | None
-    """(H, W) 1 where the outline was not the body's; None where it all may be."""
+    """(H, W) 1 where the silhouette was not the body's; None where it all may be."""
     is_changed: bool
 
 
 def corrected(seen: Seen, landmarks: Landmarks | None, least_share: float) -> Corrected:
-    """An outline without what the landmarks say is no body, and with what is missing of it.
+    """A silhouette without what the landmarks say is no body, and with what is missing of it.
 
     Args:
-        seen: The outline of a frame.
-        landmarks: Of the same frame; None, or unsure: the outline stands.
-        least_share: Of the picture's height; a lower outline is nobody's.
+        seen: The silhouette of a frame.
+        landmarks: Of the same frame; None, or unsure: the silhouette stands.
+        least_share: Of the picture's height; a lower silhouette is no person's.
     """
     if not is_trusted(landmarks):
         return Corrected(seen, None, is_changed=False)
@@ -74,14 +76,15 @@ def corrected(seen: Seen, landmarks: Landmarks | None, least_share: float) -> Co
 
 
 def is_trusted(landmarks: Landmarks | None) -> bool:
-    """Whether they may overrule an outline: they are sure, and tell how large the body is."""
+    """Whether they may overrule a silhouette: they are sure, and show how large the body is."""
     if landmarks is None or sum(landmarks.confidence) <= TRUSTED * len(landmarks.confidence):
         return False
     return stature_px(landmarks) > 0.0
 
 
 def _without_things(seen: Seen, landmarks: Landmarks) -> tuple[Bytes, Bytes | None]:
-    """The outline (H, W) without what is far from the body, and that; None if it is hardly any."""
+    """The silhouette (H, W) without what is far from the body, and that; None if it is hardly
+    any."""
     bones = [ends for ends in _ENDS.tolist() if shown(landmarks, ends)]
     mask, ends = seen.mask.view(np.uint8), np.array(landmarks.joints_px)[bones]
     share = _far_share(mask, ends, (FAR + REACH) * stature_px(landmarks))
@@ -93,7 +96,7 @@ def _without_things(seen: Seen, landmarks: Landmarks) -> tuple[Bytes, Bytes | No
 
 @compiled
 def _far_share(mask: NDArray[np.uint8], ends: Floats, reach_px: float) -> float:
-    """Share of an outline (H, W) farther than that from all of the bones (n, 2, 2)."""
+    """Share of a silhouette (H, W) farther than that from all of the bones (n, 2, 2)."""
     all_of, far = 0, 0
     for y in range(0, mask.shape[0], STRIDE):
         for x in range(0, mask.shape[1], STRIDE):
@@ -121,7 +124,7 @@ def _distance_2(x: float, y: float, ends: Floats) -> float:
 
 
 def _missing(mask: Bytes, landmarks: Landmarks) -> list[int]:
-    """Which of BONES are surely there, and not in the outline; none where they are FEW."""
+    """Which of BONES are surely there, and not in the silhouette; none where they are FEW."""
     confidence = np.array(landmarks.confidence)[_ENDS].min(axis=1)
     covered = _covered(mask, np.array(landmarks.joints_px)[_ENDS])
     missing: list[int] = np.flatnonzero((confidence > SURE) & (covered < COVERED)).tolist()
@@ -130,7 +133,8 @@ def _missing(mask: Bytes, landmarks: Landmarks) -> list[int]:
 
 @compiled
 def _covered(mask: NDArray[np.uint8], ends: Floats) -> Floats:
-    """Share of the axis of each bone (n, 2, 2) that an outline covers; 1 outside of the picture."""
+    """Share of the axis of each bone (n, 2, 2) that a silhouette covers; 1 outside of the
+    picture."""
     out = np.ones(len(ends))
     for n in range(len(ends)):
         shown, inside = 0, 0

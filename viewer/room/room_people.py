@@ -19,11 +19,11 @@ AROUND: Final = 0.07
 off by so much, and shadows lie there."""
 
 SURE: Final = 0.4
-"""Looks that are less sure than this, in the median, tell nothing of where the body ends: 0.43 to
-0.88 in made-up rooms that deceive (seeds from 1000 on), 0.04 to 0.37 in films of which the network
-makes nothing. That they are asked how sure they are was seen on these films."""
+"""Looks that are less sure than this, in the median, do not show where the body ends: 0.43 to
+0.88 in synthetic rooms that deceive (seeds from 1000 on), 0.04 to 0.37 in videos of which the
+network makes nothing. That they are asked how sure they are was seen on these videos."""
 SEVERAL: Final = 3
-"""Fewer looks that see somebody do not tell where they stay."""
+"""Fewer looks that see a person do not show where they stay."""
 FEW: Final = 20
 """Per cent of looks that have them farther on each side are left out of that."""
 
@@ -36,7 +36,7 @@ class Look(NamedTuple):
     """What the network makes of one picture."""
 
     landmarks: Landmarks
-    """Anywhere, where nobody is there."""
+    """Anywhere, where no person is there."""
     is_somebody: bool
 
     def region(self, shape: tuple[int, ...], beyond: float) -> Bytes:
@@ -51,7 +51,7 @@ def looked_at(pictures: Sequence[Image]) -> list[Look]:
 
     A look at all of a picture is coarse. Who is seen in several stays about where the surest looks
     have them: there all are looked at again, widely, as feet are easily left out, then closely;
-    somebody may be seen there who was too small in all of the picture. Where that is not sure
+    a person may be seen there who was too small in all of the picture. Where that is not sure
     either they may all be led astray together, and the first looks count.
     """
     found = (found_anywhere(picture) for picture in pictures)
@@ -69,7 +69,7 @@ def looked_at(pictures: Sequence[Image]) -> list[Look]:
 
 
 def are_sure(looks: Sequence[Look]) -> bool:
-    """Whether what looks have of somebody is sure enough to tell body from room."""
+    """Whether what looks have of a person is sure enough to separate body and background."""
     sure = [np.mean(look.landmarks.confidence) for look in looks if look.is_somebody]
     return bool(sure) and float(np.median(sure)) >= SURE
 

@@ -1,4 +1,4 @@
-"""The body in the median picture of a clip: of somebody who hides the same place in most frames."""
+"""The body in the median picture of a clip: of a person who hides the same place in most frames."""
 
 from collections.abc import Sequence
 from typing import Final
@@ -36,11 +36,12 @@ ALIKE: Final = 3e-5
 
 
 def standing(centre: Floats, looks: Sequence[Look]) -> Mask:
-    """(H, W) whom the median picture shows; nothing where nobody stays, or hides too much of it.
+    """(H, W) whom the median picture shows; nothing where no person stays, or hides too much of it.
 
     Landmarks of single frames are off, each in its own way; what most of them have is the body's.
-    From these votes, which colours are the body's and which the room's is learnt, and told of each
-    pixel with its neighbours, as far as they are of its colour; and again from what that gives.
+    From these votes, which colours are the body's and which the background's is learnt, and applied
+    to each pixel with its neighbours, as far as they are of its colour; and again from what that
+    gives.
 
     Args:
         centre: (H, W, 3) the median of the pictures.
@@ -67,7 +68,7 @@ def standing(centre: Floats, looks: Sequence[Look]) -> Mask:
 
 
 def _votes(looks: Sequence[Look], shape: tuple[int, ...], beyond: float) -> Floats:
-    """(H, W) share of the looks, the surest most, that have somebody there."""
+    """(H, W) share of the looks, the surest most, that have a person there."""
     sure = np.array([np.mean(look.landmarks.confidence) ** 2 for look in looks])
     votes = np.zeros(shape[:2], np.float32)
     for share, look in zip(sure / sure.sum(), looks, strict=True):

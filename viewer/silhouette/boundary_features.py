@@ -1,4 +1,4 @@
-"""What tells body from background around a first guess's contour, and where it was in doubt."""
+"""Features of pixels around a first guess's contour that distinguish body and background."""
 
 from typing import Final
 

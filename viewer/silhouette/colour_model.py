@@ -21,7 +21,7 @@ SURELY_BACKGROUND: Final = np.float32(2.5)
 
 
 def fresh() -> Floats:
-    """(2, SHADES) counts of the background's and of the body's colours, before anybody came."""
+    """(2, SHADES) counts of the background's and of the body's colours, before a person came."""
     return np.zeros((2, SHADES), np.float32)
 
 

@@ -1,4 +1,4 @@
-"""A small network that tells body from background at a pixel, trained on clips of known masks."""
+"""A small network that classifies pixels as body or background, trained on clips of known masks."""
 
 from functools import cache
 from pathlib import Path

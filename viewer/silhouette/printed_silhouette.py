@@ -50,7 +50,7 @@ def printed(
         background: With its range.
         frame: (H, W, 3).
         gain: (3,) how much brighter than the background it is taken to be.
-        least_rows: A lower region is nobody.
+        least_rows: A lower region is no person.
         near_px: Where the centre of the body is expected; None: the largest region is taken.
     """
     level = frame / gain

@@ -1,4 +1,4 @@
-"""Regions of a coarse picture in which somebody may be, and those that are one person's."""
+"""Regions of a coarse picture in which a person may be, and those that are one person's."""
 
 from typing import Final
 
@@ -61,7 +61,7 @@ def same_body(regions: NDArray[np.int32], best: int, rows: int) -> NDArray[np.bo
 
     Args:
         regions: (n, 4), LEFT to BOTTOM of each.
-        best: Which of them is somebody's.
+        best: Which of them is a person's.
         rows: Of the picture.
     """
     own = np.zeros(len(regions), np.bool_)

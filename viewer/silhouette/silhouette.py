@@ -23,7 +23,7 @@ from viewer.silhouette.printed_silhouette import printed
 from viewer.silhouette.regions import chosen
 
 CELLS: Final = 60
-"""Rows of the coarse picture on which regions are told apart."""
+"""Rows of the coarse picture on which regions are distinguished."""
 HOLE_SHARE: Final = 0.001
 """Holes up to this share of the picture are closed; between arm and trunk there are larger."""
 SETTLES: Final = 10
@@ -39,7 +39,7 @@ class Seen(NamedTuple):
 
     mask: Mask
     box: Box | None
-    """None where nobody is seen; the mask is empty then."""
+    """None where no person is seen; the mask is empty then."""
     area_px: int
     blobs: int
     """How many regions were large enough to be a person (P4)."""
@@ -127,7 +127,7 @@ def warm() -> None:
 
 
 def guess(state: State, frame: Image, near_px: tuple[float, float] | None) -> Guess:
-    """Find the person by subtraction and known colours, and what tells the contour better.
+    """Find the person by subtraction and known colours, and what refines the contour.
 
     Args:
         state: In the light of the frame.
@@ -168,16 +168,16 @@ def in_light_of(state: State, frame: Image) -> State:
 
 
 def without_things(state: State, before: State, frame: Image, things: Bytes | None) -> State:
-    """The state after a frame whose outline was not the body's alone.
+    """The state after a frame whose silhouette was not the body's alone.
 
-    What it told of colours is forgotten. A thing that stays, a door that was opened, somebody's
+    What it showed of colours is forgotten. A thing that stays, a door that was opened, a person's
     place when the room was learnt with them in it, becomes background.
 
     Args:
         state: After the frame, in its light.
         before: Before it.
         frame: (H, W, 3).
-        things: (H, W) 1 where the outline is not the body's; None: the body's is not whole.
+        things: (H, W) 1 where the silhouette is not the body's; None: the body's is not whole.
     """
     model = state.model._replace(body_colours=before.model.body_colours)
     state = state._replace(colours=before.colours, model=model)
@@ -203,7 +203,7 @@ def learn_colours(state: State, mask: Bytes, frame: Image, first: Guess) -> Stat
 
 
 def _reclassified(first: Guess) -> Bytes:
-    """The mask with the pixels around its contour told by the classifier, and cleaned."""
+    """The mask with the pixels around its contour decided by the classifier, and cleaned."""
     mask = first.mask.copy()
     redraw(mask, first.places, log_odds(shipped(), first.features))
     _tidy(mask)
@@ -221,7 +221,7 @@ def _tidy(mask: Bytes) -> None:
 
 
 def seen_of(mask: Bytes, blobs: int, least_share: float) -> Seen:
-    """What a mask (H, W) tells; nothing where it is lower than a person."""
+    """What a mask (H, W) shows; nothing where it is lower than a person."""
     box = box_of(mask)
     if box is None or box.bottom + 1 - box.top < least_share * mask.shape[0]:
         return Seen(np.zeros(mask.shape, np.bool_), None, 0, 0, cut=False)
@@ -246,7 +246,7 @@ def _adapted(state: State, frame: Image, box: Box | None) -> State:
 def _as_bright_as(background: Background, model: BackgroundModel) -> BackgroundModel:
     """What frames are held against, as bright as the background was learnt; the gain has the rest.
 
-    Only their product is seen. Somebody's shading, a little each time, would let the one grow and
+    Only their product is seen. A person's shading, a little each time, would let the one grow and
     the other shrink for hours, until all is white.
     """
     learnt, now = cv2.mean(background.centre)[:3], cv2.mean(model.centre)[:3]

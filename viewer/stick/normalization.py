@@ -46,7 +46,7 @@ def normalised(mask: Mask, stature_px: float) -> Normal:
     """The silhouette scaled so that a stature is STATURE_PX, the middle of its box in the middle.
 
     Args:
-        mask: (H, W), with somebody in it.
+        mask: (H, W), with a person in it.
         stature_px: Height of the body standing upright, in its pixels (T20).
     """
     rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))

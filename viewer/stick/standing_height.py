@@ -1,4 +1,4 @@
-"""How tall a person would stand at every place of a film: the scale of a single view (T20)."""
+"""How tall a person would stand at every place of a video: the scale of a single view (T20)."""
 
 from collections.abc import Sequence
 from typing import Final, NamedTuple
@@ -13,13 +13,13 @@ MIDDLE_SHARE: Final = 0.05
 UPRIGHT: Final = 0.75
 """Of the heights of a clip, the one that so many stay below: most of them stand, few jump."""
 NEARER: Final = 0.15
-"""Feet that move by this share of the height tell that the person comes nearer."""
+"""Feet that move by this share of the height show that the person comes nearer."""
 MOST_SAMPLES: Final = 300
 """Most heights that the slope is fitted to."""
 
 
 class Standing(NamedTuple):
-    """The height of somebody upright, by the row on which they stand."""
+    """The height of a person upright, by the row on which they stand."""
 
     sole_row: float
     """Row below the feet, in most frames."""
@@ -32,7 +32,7 @@ class Standing(NamedTuple):
     """No frame is lower: what squats is no measure."""
 
     def at(self, sole_row: float) -> float:
-        """Height in pixels of somebody whose feet are on a row."""
+        """Height in pixels of a person whose feet are on a row."""
         return max(self.level_px + self.slope * sole_row, self.least_px)
 
 
@@ -47,9 +47,9 @@ def standing_rows(mask: Mask) -> tuple[float, float]:
 
 
 def standing_of(rows: Sequence[tuple[float, float]], whole: Sequence[bool]) -> Standing | None:
-    """Height of the person standing upright, by all silhouettes of a film; None without any.
+    """Height of the person standing upright, by all silhouettes of a video; None without any.
 
-    One height of the film holds for all frames, not each frame's own: a squat would shrink it.
+    One height of the video holds for all frames, not each frame's own: a squat would shrink it.
     Where the feet come nearer along the floor it grows with their row.
 
     Args:

@@ -25,7 +25,7 @@ def with_stick(
     """The report with the stick body that fits its silhouette; as it is where none does.
 
     Args:
-        report: Of somebody.
+        report: Of a person.
         mask: (H, W) the silhouette.
         rotation: World to camera, (3, 3).
         known: The body that is followed.

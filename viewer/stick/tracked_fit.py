@@ -30,7 +30,7 @@ from viewer.stick.stick_costs import COSTS
 from viewer.stick.stick_search import Moves, Task, beamed, covered, refined
 
 STARTS: Final = (1.0, 0.3)
-"""Breadths of the trunk with which somebody is met of whom nothing is known."""
+"""Breadths of the trunk with which a person is met of whom nothing is known."""
 FIRST_TRUST: Final = 0.3
 """How much a standing body is expected then."""
 REFIT_SCORE: Final = 0.6
