@@ -1,5 +1,4 @@
-"""How videos can be encoded on this machine: `python -m animator.film_codec W H` tries and
-tells."""
+"""How videos can be encoded here: `python -m animator.film_codec W H` tries and reports."""
 
 import subprocess
 import sys

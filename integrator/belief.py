@@ -21,18 +21,19 @@ SURE: Final = 0.5
 LEAST: Final = 5
 """Fewer of them tell nothing."""
 ASTRAY: Final = 0.13
-"""Half of the sure landmarks are so many heights of the body from its joints: 0.03 at most in 99 %
-of the frames of r01 and r04, 0.17 in the middle of those that are more than 200 mm off."""
+"""Median distance of the sure landmarks from the body's joints, in heights of the body, from which
+it is not believed: 0.03 at most in 99 % of two performers' frames, 0.17 in the median of frames
+that are more than 200 mm off (docs/measurements.md)."""
 FACES: Final = 0.8
 """So sure must a view be of which way somebody faces ..."""
 TURNED_DEG: Final = 100.0
 """... for a body that is turned so far from it not to be believed."""
 NOBODY: Final = 0.3
-"""Landmarks that are less sure on average show nobody: they are 0.53 at least in the frames of r01
-and r04, 0.39 in those of made-up people in free motion."""
+"""Mean confidence of the landmarks below which they show no person: 0.53 at least in two
+performers' frames, 0.39 in those of synthetic people in free motion (docs/measurements.md)."""
 UNTOLD_SCORE: Final = 0.45
-"""Where the landmarks of no view are trusted, S must be this in each: 0.6 in 99 % of the frames of
-r01 and r04."""
+"""Least S in each view where the landmarks of no view are trusted: it is 0.6 in 99 % of two
+performers' frames (docs/measurements.md)."""
 
 
 def is_believed(

@@ -210,7 +210,7 @@ def _asks_for_stick(state: State) -> bool:
     """Whether the one view that is left shall fit a stick body to its next silhouette.
 
     On a calibrated rig what is proposed is nearer than a lifted stick, also where it fits badly:
-    72 mm against 179 on r01 and r04 while camera 1 is lost.
+    72 mm against 179 while camera 1 is lost (docs/measurements.md).
     """
     alone = None if state.found is None else state.found.alone
     return alone is not None and alone.stick and state.scale_source == "assumed"

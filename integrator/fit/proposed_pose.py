@@ -21,7 +21,8 @@ from integrator.proposal.pose_proposal import Memory, PoseProposal
 from integrator.rig.best_pair import Places, Two, two_of
 
 POOR: Final = 0.6
-"""Of less S in either view a pose fits badly: of r01's and r04's every twentieth is."""
+"""S in either view below which a pose fits badly: every twentieth of two performers does
+(docs/measurements.md)."""
 
 
 class Before(NamedTuple):

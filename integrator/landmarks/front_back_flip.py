@@ -13,9 +13,9 @@ from integrator.proposal import pose_network
 WIDE_DEG: Final = 30.0
 """Standard deviation of the facing that a view tells."""
 SHARPER: Final = 3.0
-"""How many times surer than it says a view is that it did not take front for back (a profile stays
-the same profile then), as logits: of r01, r04 and made-up people whom views are .5 to .6, .6 to .7,
-.7 to .8 and .8 to 1 sure of, 37, 15, 8 and .1 % are taken for the other way about."""
+"""Factor on the logit of a view's confidence that it did not take front for back (a profile stays
+the same profile then). Of poses whose views are .5 to .6, .6 to .7, .7 to .8 and .8 to 1 sure, 37,
+15, 8 and .1 % are reversed: two performers and synthetic people (docs/measurements.md)."""
 UNTOLD: Final = 0.15
 """How often one that does not tell it does."""
 UNIFORM_FLOOR: Final = 0.005

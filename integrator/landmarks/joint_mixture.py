@@ -36,7 +36,8 @@ class Spread(NamedTuple):
 PROPOSED: Final = Spread(right=0.014, unsure=0.061, roughly=0.09, often=0.95, far=8)
 """Of joints that outlines propose, metres."""
 SHOWN: Final = Spread(right=0.012, unsure=0.035, roughly=0.051, often=0.55, far=2)
-"""Of landmarks, statures beside their ray. All were chosen on r01, r04 and made-up people."""
+"""Spread of landmarks beside their ray, statures. It and the spreads above were chosen on two
+performers and synthetic people (docs/measurements.md)."""
 OUTLIER_PENALTY: Final = 4.5
 """So far the log probability of what is neither is lowered, while nothing is doubted."""
 LEAST, MOST = 0.01, 0.98

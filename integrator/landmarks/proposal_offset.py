@@ -15,9 +15,9 @@ from integrator.landmarks.joint_mixture import SHOWN
 from integrator.landmarks.landmark_rays import Rays
 
 USUAL: Final = np.array([0.015, 0.015, 0.015, math.radians(3.0)])
-"""How far proposals are displaced and turned where nothing is wrong but landmarks, metres and
-radians: 95 % of r01's and r04's instants are displaced by no more than 1.5 times that, and turned
-by no more than some twice."""
+"""Offset and turn of proposals where only landmarks err, metres and radians: 95 % of two
+performers' instants are offset by no more than 1.5 times that and turned by no more than about
+twice that (docs/measurements.md)."""
 SURELY: Final = 1.5
 """So many times as far, a proposal is believed; of what is beyond it is moved back."""
 EMA_WEIGHT: Final = 0.3

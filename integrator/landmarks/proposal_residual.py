@@ -10,22 +10,23 @@ from common.body.body import Vector
 from integrator.landmarks.landmark_rays import Rays
 
 USUAL: Final = 0.06
-"""Proposals of r01 and r04 are hardly ever farther off, in statures ..."""
+"""Residual of a proposal that is usual, statures: two performers' are hardly ever larger
+(docs/measurements.md)."""
 WIDER: Final = 2.0
-"""... and one who is farther is believed by so much less closely for each that he is."""
+"""Factor on the spread of a proposal whose residual is larger, for each USUAL that it has more."""
 FARTHEST: Final = 0.25
-"""A landmark that is farther off says no more than one that is so far."""
+"""Residual of a landmark above which it counts no more, statures."""
 DOUBTED_FROM: Final = 0.035
-"""A third are farther off, in statures; one who is farther ..."""
+"""Residual from which a proposal is doubted, statures: a third have a larger one."""
 ODDS_EXPONENT: Final = 4.0
-"""... is right by odds that fall with this power of how much farther: of made-up people in rooms
-that deceive, joints of .7 to .9 sure proposals that were .03, .045, .06, .08 and .1 off were near
-in 76, 55, 47, 29 and 11 % ..."""
+"""Power of the ratio of a residual to DOUBTED_FROM by which the proposal's odds fall. Of synthetic
+people before misleading backgrounds, joints of proposals of confidence .7 to .9 with residuals of
+.03, .045, .06, .08 and .1 were near in 76, 55, 47, 29 and 11 % (docs/measurements.md)."""
 TURNED: Final = 50.0
-"""... and by so many times lower odds where it is taken for turned about: 1 % of those were near,
-60 % roughly right."""
+"""Factor by which the odds fall further where the proposal may have front for back: 1 % of those
+were near, 60 % roughly right (docs/measurements.md)."""
 EMA_WEIGHT: Final = 0.2
-"""Share of an instant that all its landmarks are sure of."""
+"""Weight in the running mean of an instant whose landmarks are all sure."""
 
 
 class Misfit(NamedTuple):
@@ -68,7 +69,7 @@ def wider_m(misfit: Misfit, rays: Rays, stature_m: float) -> Vector:
     """By how much the spread of each proposed joint grows, (12,) metres.
 
     What one outline proposes, and one view alone shows, is doubted pair by pair as well. Of two
-    views it would be the worse for it: 25.0 mm of `dev` for 23.4.
+    views it would be the worse for it: 25.0 mm for 23.4 (docs/measurements.md).
     """
     squares = np.full_like(misfit.pairs, misfit.whole)
     if rays.confidence.any(axis=1).sum() < 2:

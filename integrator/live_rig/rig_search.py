@@ -20,22 +20,25 @@ from common.rig.camera import Rig
 from integrator.live_rig.rig_job import Job, Solved, Stand, Trusted, packed
 
 ASKS_S: Final = (4.0, 8.0, 16.0, 32.0)
-"""After so many seconds of motion that both views see a rig is asked for: as often, no oftener."""
+"""Seconds of motion seen by both views after which a rig is asked for."""
 MOVED: Final = 0.04
-"""Joints that went on average so many heights of the person have moved."""
+"""Mean distance that joints must have gone for the person to have moved, heights of the person."""
 STILL_S: Final = 1.0
-"""Whoever has not moved for so long tells nothing new."""
+"""Seconds without motion after which further instants are not gathered."""
 MOST_GAP_MM: Final = 35.0
-"""By which sight lines of a believable rig miss each other: 15 to 21 on r01 and r04."""
+"""Mean distance between a believable rig's sight lines of one joint, at most: 15 to 21 for two
+performers (docs/measurements.md)."""
 MOST_TURN_DEG: Final = 15.0
-"""How uncertain the yaw of camera 2 may be: 4 to 10 on r01 and r04."""
+"""Standard deviation of camera 2's yaw, at most: 4 to 10 for two performers
+(docs/measurements.md)."""
 BETTER: Final = 0.7
-"""A rig by which views are less than this share of what they are apart by the one in use ..."""
+"""Ratio of the views' distance with a new rig to that with the one in use, below which the new one
+may replace it."""
 BETTER_MM: Final = 5.0
-"""... and by so much, is worth a jump ..."""
+"""Least gain in the views' distance for that."""
 MORE: Final = 4.0
-"""... and so is one by so many times the motion: on r01 and r04 31 and 33 mm after 4 s became 27
-after 16."""
+"""Factor of motion from which a rig replaces the one in use whatever it gains: two performers'
+error of 31 and 33 mm after 4 s became 27 after 16 s (docs/measurements.md)."""
 
 
 class State(NamedTuple):

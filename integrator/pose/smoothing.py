@@ -13,8 +13,8 @@ from common.body.body import Vector
 class Smoothing(NamedTuple):
     """How much is believed of what is measured.
 
-    With 3 to 6 degrees of white noise on the true angles of r01 and r04 this errs least, or within
-    6 % of it, at the pace that was filmed and at twice that pace.
+    With 3 to 6 degrees of white noise on the true angles of two performers this errs least, or
+    within 6 % of it, at the pace that was filmed and at twice that pace.
     """
 
     noise_deg: float = 6.0

@@ -30,8 +30,8 @@ OFF: Final = {
     "knee": (0.0, 0.009, 0.007),
     "ankle": (0.0, 0.009, 0.0),
 }
-"""How far inwards, up and before the true joints of r01 and r04 the network finds them, in
-statures: made-up people have theirs elsewhere in their outline."""
+"""Offset of the network's joints inwards, up and forwards from the true joints of two performers,
+statures: synthetic people have theirs elsewhere in their silhouette (docs/measurements.md)."""
 JOINTS_OFF: Final = np.array(
     [
         np.multiply(OFF.get(name[2:], (0.0, 0.0, 0.0)), (-1.0 if name[0] == "l" else 1.0, 1.0, 1.0))
@@ -40,16 +40,17 @@ JOINTS_OFF: Final = np.array(
 )
 """(12, 3) the same, to the left, up and before."""
 RISE: Final = (0.055, 0.080)
-"""How far shoulders stand above the cylinders' when both upper arms are level, and how much farther
-when they point straight up (less far: straight down), in lengths from pelvis to neck: robust least
-squares of what the true necks of r01 and r04, whose spines keep their lengths, leave of it."""
+"""Height of the shoulders above the cylinders' when both upper arms are level, and what is added
+when they point straight up (subtracted: straight down), in lengths from pelvis to neck: robust
+least squares on the true necks of two performers, whose spines keep their lengths
+(docs/measurements.md)."""
 PLATT: Final = (0.99, -0.64)
-"""Platt scaling: slope and offset of the logit by which the network's confidence, learnt with
-made-up people, becomes how often a joint of r01, of r04 and of people made up anew was less than
-50 mm off."""
+"""Platt scaling of the network's confidence, learnt on synthetic people: slope and offset of the
+logit; the target is a joint less than 50 mm off. Fitted to two performers and new synthetic people
+(docs/measurements.md)."""
 CONFIDENT: Final = 0.75
-"""A proposal whose landmarks are surer than this on average is left as it is: cylinders that match
-better than it stand farther from the true joints of r01 and r04."""
+"""Mean confidence of the landmarks above which a proposal is left as it is: cylinders that match
+better than it stand farther from two performers' true joints (docs/measurements.md)."""
 
 LEANS: Final = math.cos(math.radians(60.0))
 """Cosine of the lean of a trunk from which on outlines are looked at as if it stood: the network
@@ -58,17 +59,19 @@ has seen nobody who leans farther."""
 HARDLY: Final = 0.01
 """No joint is surer than its odds are with so much doubt added, where two proposals are joined."""
 BELIEVED: Final = 3.0
-"""How many times the odds of what is lifted count beside those of outlines: of r01 and r04 alone
-98 % of depths' signs are right at 2, 99 at 3 and 4, and joints are as far off at 2 to 4."""
+"""Factor on the odds of the lifted depths beside those of the silhouettes: of two performers 98 %
+of the depths' signs are right at 2, 99 % at 3 and 4, and the joints' error is the same at 2 to 4
+(docs/measurements.md)."""
 
 BELIEVED_AFTER_S: Final = 8.0
-"""What is lifted counts in full after one view was alone so long, where two were before, and from
-0 on ever more until then: the network of outlines remembers what both showed, that of landmarks
-was taught no such change. Of 2, 4 and 8 the best of r01, r04 and made-up people in free motion."""
+"""Seconds of one view alone, after two, from which what is lifted counts in full; from 0 on it
+counts ever more: the network of silhouettes remembers what both views showed, that of landmarks was
+trained on no such change. The best of 2, 4 and 8 (docs/measurements.md)."""
 
 PLACED: Final = 0.5
-"""So far from where the outline alone has the hips towards where they are lifted. Of 0, .35, .5 and
-.65 the best in sum of r01, r04 and eight made-up people who fall, each camera alone."""
+"""Share of the way from the hips of the silhouette alone to the lifted hips at which they are
+placed: the best of 0, .35, .5 and .65 in sum over two performers and eight synthetic people who
+fall, each camera alone (docs/measurements.md)."""
 
 
 class Memory(NamedTuple):

@@ -20,12 +20,12 @@ from integrator.single.sight import Hypothesis, Sight, posed
 from integrator.single.stick_similarity import stick_similarity
 
 CROWN: Final = 0.155
-"""How far the crown lies above the neck, in statures: 0.15 to 0.17 of r01, r04 and synthetic people
-whose arms are not raised."""
+"""Height of the crown above the neck, statures: 0.15 to 0.17 for two performers and synthetic
+people whose arms are not raised (docs/measurements.md)."""
 
 BESIDE: Final = 1 / 3
-"""Exponent by which the confidence in a joint that one outline proposes becomes that in its place
-in the picture: chosen on r01 and r04."""
+"""Exponent that turns the confidence in a joint of one silhouette into that of its place in the
+picture: chosen on two performers (docs/measurements.md)."""
 
 
 class Proposed(NamedTuple):

@@ -30,8 +30,9 @@ PROPOSED_HZ: Final = 1.0
 SUREST: Final = 0.97
 """No picture is believed more."""
 FACES: Final = 0.8
-"""Pictures that are surer which way somebody faces tell left from right: by more than 90 degrees
-0.05 % of made-up people's in free motion are wrong, none of r01's and r04's."""
+"""Confidence of a facing from which a picture distinguishes left from right: more than 90 degrees
+off are 0.05 % of synthetic people's in free motion, none of two performers'
+(docs/measurements.md)."""
 NEARLY_DEG: Final = 40.0
 """How far a proposal may face beside the sector that the user named."""
 PELVIS: Final = JOINT_NAMES.index("pelvis")

@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 from common.body.body import JOINT_NAMES, Vector
 
 DEPTH_TIMES: Final = 2.0
-"""So many times as uncertain along the line of sight as across it is a joint. Of 1, 2 and 4 it has
-the least error in the room on r01 and r04; in the picture it gains from each."""
+"""Ratio of a joint's uncertainty along the line of sight to that across it: of 1, 2 and 4 it has
+the least error in the world on two performers; in the picture all improve
+(docs/measurements.md)."""
 HALVINGS: Final = 40
 LEAST: Final = 1e-6
 """Share of a rigid limb that is added to one, whose ends may have been found at one place."""

@@ -20,9 +20,9 @@ from runtime.unfinished.work import Kept
 NOISE_M: Final = 0.05
 """Standard deviation of a joint as one view has it."""
 ACCELERATION_M_S2: Final = 40.0
-"""Standard deviation of its acceleration between two frames. Of 20, 30, 40 and 60, by `steadied`,
-joints of r01, r04 and six made-up people in free motion err least with 20 at their own pace and
-with 60 at twice that; with 40 within 1 % of both."""
+"""Standard deviation of a joint's acceleration between two frames. Of 20, 30, 40 and 60 joints err
+least with 20 at their own pace and with 60 at twice that; with 40 within 1 % of both: two
+performers and six synthetic people in free motion, by `steadied` (docs/measurements.md)."""
 START_SPEED_M_S: Final = 2.0
 """Standard deviation of the speed at the first frame: a limb may be moving already."""
 ROUNDS: Final = 3

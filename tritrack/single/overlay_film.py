@@ -1,5 +1,4 @@
-"""The overlay of a run as a video: what was followed, drawn on the pictures that it was found
-in."""
+"""The overlay of a run as a video: what was followed, drawn on its pictures."""
 
 from collections.abc import Iterator
 from pathlib import Path

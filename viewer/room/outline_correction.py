@@ -1,5 +1,4 @@
-"""A silhouette held against the landmarks: what is far from the body goes, what is missing
-comes."""
+"""A silhouette held against the landmarks: what is far from the body goes, bones are added."""
 
 from typing import Final, NamedTuple
 
