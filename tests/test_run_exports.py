@@ -118,7 +118,8 @@ def write(folder: Path, joints_m: np.ndarray, time_s: np.ndarray) -> None:
         for frame, row in enumerate(joints_m)
     ]
     folder.mkdir(exist_ok=True)
-    np.savez(folder / "poses.npz", **poses(bodies))
+    arrays: dict[str, Any] = dict(poses(bodies))
+    np.savez(folder / "poses.npz", **arrays)
     (folder / "summary.json").write_text("{}")
 
 
