@@ -36,17 +36,13 @@ ARMS, LEGS = slice(0, 6), slice(6, 12)
 PROPOSED_RIGHT: Final = (0.18, 0.9)
 """Confidence in a proposed joint at which it is never, and always, taken for right."""
 SHOWN_RIGHT: Final = (0.02, 0.91)
-"""Likewise of a landmark."""
+"""Confidence in a landmark at which it is never, and always, taken for right."""
 FIRM_M: Final = 0.02
 PLATT: Final = (2.15, 4.25)
 """Platt scaling of a fused joint's confidence: the logit at a standard deviation of FIRM_M, and its
-fall as that grows e-fold; the target is a joint less than 50 mm off. Fitted to two performers and
-synthetic people (docs/measurements.md)."""
-_DIAGONAL: Final = [0, 3, 5]
-
-
+fall as that grows e-fold. Fitted to joints less than 50 mm off (docs/measurements.md)."""
 Probability = TypeVar("Probability", float, Vector)
-"""One probability, or one of each joint."""
+_DIAGONAL: Final = [0, 3, 5]
 
 
 class Memory(NamedTuple):
