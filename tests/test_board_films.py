@@ -130,7 +130,7 @@ def test_pictures_of_another_size_are_refused_with_both_sizes(
     shown: Corners = {0: (A4, (2.0, 1.0))}
     infos = {"one": VideoInfo(640, 480, 5.0, 2), "two": VideoInfo(480, 640, 5.0, 2)}
     said = refused(monkeypatch, Films(infos, {"one": shown, "two": shown}))
-    assert said == "two has pictures of 480x640, one of 640x480: film both alike"
+    assert said == "two has pictures of 480x640, one of 640x480: record both alike"
 
 
 def test_another_board_than_the_first_films_is_refused_with_both_names(

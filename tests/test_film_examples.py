@@ -86,5 +86,5 @@ def test_a_film_of_nobody_is_named(clip: Path, tmp_path: Path) -> None:
     for path in sorted(teacher.iterdir())[1:]:
         path.unlink()
     film = next(clip.glob("cam1.*"))
-    with pytest.raises(TrainingError, match=r"cam1\.\w+: .*keypoints sees nobody there"):
+    with pytest.raises(TrainingError, match=r"cam1\.\w+: .*keypoints sees no person there"):
         looked_through(film, str(teacher), tmp_path / "work", lambda _: None)

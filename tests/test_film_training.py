@@ -155,7 +155,7 @@ def test_too_few_examples_are_counted_and_refused(
     """At least 50 to learn from and 12 held back."""
     looking(training, monkeypatch, *counts)
     total = sum(counts[0]) + sum(counts[1])
-    due = f"^the teacher saw somebody in {total} frames: name films of more"
+    due = f"^the teacher saw a person in {total} frames: name videos of more"
     with pytest.raises(TrainingError, match=due):
         training._looked([Path("a.mp4"), Path("b.mp4")], "mediapipe", Path("work"), QUIET)
 

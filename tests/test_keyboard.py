@@ -80,7 +80,7 @@ def test_nobody_who_is_not_seen_is_moved(page: RetouchPage) -> None:
     page.take.joints_m[2] = page.take.joints_m[2] * float("nan")
     pressed(page, "ffl")
     assert page.notes == Notes()
-    assert "nobody is seen here" in page._controls.kept.content
+    assert "no person is seen here" in page._controls.kept.content
 
 
 def test_what_could_not_be_kept_is_kept_by_the_next_save(page: RetouchPage, tmp_path: Path) -> None:

@@ -48,7 +48,7 @@ def test_takes_that_have_nothing_in_common_are_refused(known: PostureModel) -> N
 
 
 def test_two_takes_are_too_few(known: PostureModel) -> None:
-    with pytest.raises(LearningError, match="film at least 3"):
+    with pytest.raises(LearningError, match="record at least 3"):
         taught(known, NEW, [perform(NEW, n) for n in range(2)])
 
 

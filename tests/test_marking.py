@@ -218,7 +218,7 @@ def test_a_wish_that_cannot_be_done_is_told_and_what_was_shown_stays(tmp_path: P
     outside = moved(clicked_markers(), 2, 0, (5000.0, 0.0))
     for wish, says in (
         (Marked(outside, "ann", 1), "point 3 is outside the picture"),
-        (Save(), "markers tell no whole calibration: there is nothing to save but points"),
+        (Save(), "markers give no whole calibration: there is nothing to save but points"),
     ):
         page: Any = Wishing(wish)
         shown, saved = marking._hear(page, method, hello_of(method, ""), nothing, kept)

@@ -66,7 +66,7 @@ def test_what_belongs_to_nobody_is_refused() -> None:
             np.arange(40) / 15, joints_px, sure, rng.uniform(-180, 180, 40), sure[:, 0]
         )
 
-    with pytest.raises(CalibrationError, match="fits no rig: film somebody who stands and walks"):
+    with pytest.raises(CalibrationError, match="fits no rig: record a person who stands and walks"):
         calibrated_by_person((Sighting(wandering(), wandering(), (320, 240)),), 1.75)
 
 

@@ -196,10 +196,10 @@ def test_a_pole_that_one_camera_does_not_show_still_serves_the_other() -> None:
     ("places", "height_m", "taped_m", "says"),
     [
         (CORNERS[:1], 2.2, (None, None), "cam1 shows 1 poles"),
-        ([(0.0, 0.0), (1.0, 0.0)], 2.2, (None, 4.5), "do not tell how far cam1 stands"),
+        ([(0.0, 0.0), (1.0, 0.0)], 2.2, (None, 4.5), "do not show how far cam1 stands"),
         ([(0.0, 0.0), (0.0, 1.0)], 2.2, (4.0, None), "no pole stands off the axis of cam1"),
         (CORNERS, 1.0, (None, None), "cam1"),
-        (CORNERS, 2.2, (0.5, None), "do not tell how far cam1 stands"),
+        (CORNERS, 2.2, (0.5, None), "do not show how far cam1 stands"),
     ],
     ids=["one pole", "all equally far", "all on the axis", "tops at the lens", "pole behind lens"],
 )
@@ -225,7 +225,7 @@ def test_a_pole_at_the_lens_itself_is_refused() -> None:
     """It was a fault: numbers overflowed on the way to the same refusal."""
     near = 2.2250738585072014e-308
     measured = Poles(160, 120, 1.0, (Pole(near, 0.0, None, (1.0, 1.0)),) * 2, None, 1e-200)
-    with pytest.raises(CalibrationError, match="do not tell how far cam2 stands"):
+    with pytest.raises(CalibrationError, match="do not show how far cam2 stands"):
         camera_by_poles(measured, 2)
 
 

@@ -145,7 +145,7 @@ def test_a_split_that_measures_nothing_is_refused(
 
 def test_one_performer_cannot_be_left_out(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     shown(of("ann", 1), monkeypatch)
-    with pytest.raises(TrainingError, match="nobody is left to learn from"):
+    with pytest.raises(TrainingError, match="none is left to learn from"):
         evaluate(tmp_path, EACH_IN_TURN)
 
 

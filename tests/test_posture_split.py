@@ -78,7 +78,7 @@ def test_performers_are_named_by_patterns_with_blanks_between_them() -> None:
     for split in ("a1", "a1:", ":b1", "a1:zoe", "a1,b1"):
         with pytest.raises(TrainingError, match=f"the split '{split}' must be leave-one-performer"):
             posture_split.parts_of(of("a1", "b1"), split)
-    with pytest.raises(TrainingError, match="one performer alone: nobody is left to learn from"):
+    with pytest.raises(TrainingError, match="one performer alone: none is left to learn from"):
         posture_split.parts_of(of("a1"), EACH_IN_TURN)
     assert posture_split.parts_of(of("a1", "a2"), EACH_IN_TURN) is None
 

@@ -157,7 +157,7 @@ def test_a_frame_without_a_pose_shows_its_picture_alone(page: RetouchPage) -> No
     scene = page._server.scene
     assert not scene.get_handle_by_name("/body").visible
     assert scene.get_handle_by_name("/picture").image[0, 0, 0] == 60
-    assert "nobody is seen" in page._controls.open.content
+    assert "no person is seen" in page._controls.open.content
 
 
 def test_a_foreign_web_page_may_not_read_or_write_notes(page: RetouchPage) -> None:

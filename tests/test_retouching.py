@@ -219,7 +219,7 @@ def test_a_run_of_a_camera_wants_a_film_of_it(
     camera = msgspec.structs.replace(found.views[0], source=0)
     live = msgspec.structs.replace(found, views=(camera,))
     monkeypatch.setattr(retouching, "open_clip", lambda *_: live)
-    with pytest.raises(RetouchError, match="is of a camera: name a film of it with --video"):
+    with pytest.raises(RetouchError, match="is of a camera: name a video of it with --video"):
         retouch(run, None, None, 8080, QUIET)
 
 

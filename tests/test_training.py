@@ -64,7 +64,7 @@ def test_a_model_of_few_takes_or_one_posture_is_warned_of(
         assert isinstance(console.file, io.StringIO)
         return console.file.getvalue()
 
-    assert "warning: less than 3 takes of raise_right_lateral, squat: film more" in said()
+    assert "warning: less than 3 takes of raise_right_lateral, squat: record more" in said()
     shown[:] = [each for each in shown if each.posture == "squat"]
     assert "warning: only squat is learnt: such a model names any motion so" in said()
     shown[:] = [Recording("s02", name, perform(name, n)) for name in POSTURES for n in range(3)]

@@ -80,7 +80,7 @@ def test_pixels_that_are_nearly_square_stay_as_they_are() -> None:
 
 def test_a_sensor_that_is_tilted_cannot_be_turned_and_says_so() -> None:
     camera = rolled(90.0, bent=(*BENT, 0.01, 0.0))
-    with pytest.raises(CalibrationError, match=r"camera cam1 is rolled .*turn its film upright"):
+    with pytest.raises(CalibrationError, match=r"camera cam1 is rolled .*turn its video upright"):
         upright_camera(camera, upright_of(camera, SIZE))
     level = rolled(0.0, bent=(*BENT, 0.01, 0.0))
     assert upright_camera(level, upright_of(level, SIZE)) == level

@@ -55,7 +55,7 @@ SOURCE_WORDS: Final[dict[ScaleSource, str]] = {
     "assumed": "the rig is assumed",
 }
 STATUS_WORDS: Final[dict[Status, str]] = {
-    "empty": "nobody in view",
+    "empty": "no person in view",
     "measuring": "measuring the body",
     "tracking": "tracking",
     "predicted": "predicted, not believed",

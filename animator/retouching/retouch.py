@@ -161,7 +161,7 @@ class RetouchPage:
         """Move the chosen joint in the picture."""
         with self._lock:
             if not self.take.posed[self._row]:
-                self._controls.tell("nobody is seen here: no joint to move", True)
+                self._controls.tell("no person is seen here: no joint to move", True)
                 return
             joints_px, _ = with_notes(self.take, self._row, held(self.notes, self._frame))
             column, row = joints_px[self._joint] + (across_px, down_px)

@@ -96,13 +96,13 @@ def _related(
             raise CalibrationError(
                 f"{films[0].name} and {film.name} show the board at rest together {both} times, "
                 f"{LEAST_SHARED} or more are needed: hold it for two seconds where both see it, "
-                "and begin both films within half a second"
+                "and begin both videos within half a second"
             )
         place, off_px = between(lenses[0], lenses[n], places, moments.px[:, n])
         if off_px > APART * width_px:
             raise CalibrationError(
                 f"{film.name} does not show the moments that {films[0].name} shows ({off_px:.0f} "
-                "px apart): begin both films within half a second, and move no camera"
+                "px apart): begin both videos within half a second, and move no camera"
             )
         cameras.append(place)
     return cameras

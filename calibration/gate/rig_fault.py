@@ -72,7 +72,7 @@ def advice_on(
     if trust.odd == ("late",) and clock.rivals_s:
         candidates_s = sorted(set_back_s + late for late in (clock.late_s, *clock.rivals_s))
         several = ", ".join(f"{late_s:+.2f}" for late_s in candidates_s)
-        return f"the motion does not tell which of {several} s: say it by --offset SECONDS"
+        return f"the motion does not show which of {several} s: say it by --offset SECONDS"
     if trust.odd == ("late",):
         late_s = set_back_s + trust.late_frames * period_s
         return (

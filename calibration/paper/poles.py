@@ -230,6 +230,6 @@ def _linear(tops: _Tops, values: Vector) -> tuple[Vector, Vector]:
 
 def _distance_unknown(name: str) -> CalibrationError:
     return CalibrationError(
-        f"the poles do not tell how far {name} stands: put them at two distances from it or more, "
+        f"the poles do not show how far {name} stands: put them at two distances from it or more, "
         f"with tops well above its centre row, or give distance_{name[-1]}_m by tape"
     )

@@ -69,15 +69,15 @@ def calibrated_by_person(
     moments = evidence.moments
     if moments < FEWEST or not all(all(clip.units_px) for clip in evidence.clips):
         raise CalibrationError(
-            f"both cameras see the same person in {moments} moments only: film somebody, whole in "
-            f"both pictures, who moves for some seconds"
+            f"both cameras see the same person in {moments} moments only: record a person, "
+            f"whole in both pictures, who moves for some seconds"
         )
     found = best_fit(evidence, clocks)
     seen = _explained(found, evidence)
     if _met_share(seen, evidence) < LEAST_MET:
         raise CalibrationError(
-            "what both cameras show of the person fits no rig: film somebody who stands and walks, "
-            "whole in both pictures"
+            "what both cameras show of the person fits no rig: record a person who stands and "
+            "walks, whole in both pictures"
         )
     places = seen[0].met.points_m[:AT_FIRST, prior.PELVIS]
     person_m = np.median(places, axis=0)

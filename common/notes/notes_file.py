@@ -27,7 +27,7 @@ CURES: Final = {
 """What to write instead, by key."""
 
 HEAD: Final = f"""\
-# What the pictures of a video do not tell: read by `tritrack single`, edited by `tritrack retouch`
+# What the pictures of a video do not show: read by `tritrack single`, edited by `tritrack retouch`
 # (which keeps what you write beside). A note holds from its frame on, until another changes it.
 #   orientation  {", ".join(ORIENTATIONS)}
 #   depth        of a segment's far end: toward or away from the camera

@@ -88,7 +88,7 @@ def _turned_distortion(camera: Camera, quarters: int) -> tuple[float, ...]:
     if quarters and any(bent[TILTED_SENSOR:]):
         raise CalibrationError(
             f"camera {camera.name} is rolled by more than 45 degrees, and its distortion tilts the "
-            "sensor (14 numbers): turn its film upright, and calibrate it without that"
+            "sensor (14 numbers): turn its video upright, and calibrate it without that"
         )
     for _ in range(quarters):
         if len(bent) >= 4:

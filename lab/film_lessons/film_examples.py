@@ -69,7 +69,7 @@ def looked_through(film: Path, teacher: str, folder: Path, tell: Tell) -> Looked
         examples = list(_examples(film, teacher, tell))
         learnt = round((1.0 - HELD_SHARE) * len(examples))
         if not 0 < learnt < len(examples):
-            raise TrainingError(f"{film}: {teacher} sees nobody there: leave it out")
+            raise TrainingError(f"{film}: {teacher} sees no person there: leave it out")
         for part, own in ((looked.learnt, examples[:learnt]), (looked.held, examples[learnt:])):
             store(part, own)
     tell(1.0)

@@ -137,7 +137,7 @@ def _looked(films: Sequence[Path], teacher: str, folder: Path, console: Console)
     learnt, held = ([len(PictureStore([each[at]])) for each in looked] for at in (0, 1))
     if sum(learnt) < FEWEST or sum(held) < FEWEST // 4:
         raise TrainingError(
-            f"the teacher saw somebody in {sum(learnt) + sum(held)} frames: name films of more"
+            f"the teacher saw a person in {sum(learnt) + sum(held)} frames: name videos of more"
         )
     return looked
 

@@ -52,14 +52,14 @@ def taught(
     """
     if len(takes) < LEAST_TAKES:
         raise LearningError(
-            f"{len(takes)} of {LEAST_TAKES} takes of {posture}: film at least {LEAST_TAKES}, "
+            f"{len(takes)} of {LEAST_TAKES} takes of {posture}: record at least {LEAST_TAKES}, "
             "the same motion each time"
         )
     for i, rows in enumerate(takes):
         if len(with_pose(rows)) < STATES:
             raise LearningError(
                 f"take {i + 1} has fewer than {STATES} frames of motion in which the person was"
-                " tracked: film it again"
+                " tracked: record it again"
             )
     judged = tuple(_judged(known, posture, takes, i) for i in range(len(takes)))
     lesson = Lesson(extended(known, {posture: takes}, performers), judged)
@@ -67,7 +67,7 @@ def taught(
         rivals = ", ".join(sorted({judged[i].rival for i in lesson.mistaken}))
         raise LearningError(
             f"takes {_numbers(lesson.mistaken)} of {len(takes)} are not known again by the others:"
-            f" they are likelier {rivals}; film the same motion each time, or another posture"
+            f" they are likelier {rivals}; record the same motion each time, or another posture"
         )
     return lesson
 

@@ -84,7 +84,7 @@ def parts_of(given: Sequence[Recording], split: str) -> Fold | None:
     """
     if split == EACH_IN_TURN:
         if len({one.performer for one in given}) < 2:
-            raise TrainingError("one performer alone: nobody is left to learn from")
+            raise TrainingError("one performer alone: none is left to learn from")
         return None
     learnt, colon, tested = split.partition(":")
     parts = _of(given, learnt), _of(given, tested)

@@ -129,7 +129,8 @@ def line(facts: Facts) -> str:
         f" {len(facts['knows'])} postures known; written to {facts['model']}"
     ]
     told += [
-        f"{take['clip']} was taken for {take['rival']} by what the other takes teach: film it again"
+        f"{take['clip']} was taken for {take['rival']} by what the other takes teach:"
+        " record it again"
         for take in mistaken
     ]
     if not mistaken:

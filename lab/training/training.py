@@ -87,7 +87,7 @@ def _warn_of_few(learnt: Mapping[str, Sized], console: Console) -> None:
     if few:
         warn(
             console,
-            f"less than {LEAST_TAKES} takes of {', '.join(few)}: film more, of several people",
+            f"less than {LEAST_TAKES} takes of {', '.join(few)}: record more, of several people",
         )
 
 

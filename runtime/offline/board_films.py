@@ -105,7 +105,7 @@ def _refuse_another(first: Looked, other: Looked) -> None:
     if one.size_px != two.size_px:
         sizes = [f"{width}x{height}" for width, height in (one.size_px, two.size_px)]
         raise CalibrationError(
-            f"{two.name} has pictures of {sizes[1]}, {one.name} of {sizes[0]}: film both alike"
+            f"{two.name} has pictures of {sizes[1]}, {one.name} of {sizes[0]}: record both alike"
         )
     if first.board != other.board:
         names = {board: paper.upper() for paper, board in BOARDS.items()}

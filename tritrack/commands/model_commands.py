@@ -48,10 +48,10 @@ def train(
     ] = "postures",
     film: Annotated[
         list[Path] | None,
-        typer.Option(help="Of landmarks: a film to teach the shipped network on; again for more."),
+        typer.Option(help="Of landmarks: a video to train the shipped network on; again for more."),
     ] = None,
     teacher: Annotated[
-        str, typer.Option(help="Who tells the joints in films: mediapipe, or keypoint files.")
+        str, typer.Option(help="Source of the joints in videos: mediapipe, or keypoint files.")
     ] = "mediapipe",
     recognizer: RecognizerName = "default",
     mode: OwnMode = None,
@@ -73,7 +73,7 @@ def train(
     refuse_to_replace(out, force or goes_on)
     if film:
         if what != "landmarks":
-            raise typer.BadParameter("only landmarks are learnt from films: add --what landmarks")
+            raise typer.BadParameter("only landmarks are learnt from videos: add --what landmarks")
         _teach_on_films(film, teacher, out, json_wanted)
         return
     if what != "postures":

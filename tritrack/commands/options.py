@@ -139,7 +139,7 @@ Cache = Annotated[
 ]
 Record = Annotated[
     bool,
-    typer.Option(help="Keep outlines and joints as recording.mcap: tritrack replay, Foxglove."),
+    typer.Option(help="Keep silhouettes and joints as recording.mcap: tritrack replay, Foxglove."),
 ]
 Resume = Annotated[
     bool, typer.Option("--resume", help="Go on with what was cut short; leave out what is done.")

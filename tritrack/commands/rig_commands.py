@@ -75,7 +75,7 @@ def person(
     )
     if quality.unsure:
         console.print(
-            f"not known well enough: {', '.join(quality.unsure)}: film somebody who walks to "
+            f"not known well enough: {', '.join(quality.unsure)}: record a person who walks to "
             "and fro all over the room, for a minute or more",
             highlight=False,
             soft_wrap=True,
@@ -239,7 +239,7 @@ def import_(
     ] = None,
     up: Annotated[
         Literal["x", "y", "z", "-x", "-y", "-z"] | None,
-        typer.Option(help="Which axis of its world is up, where rolled cameras do not tell."),
+        typer.Option(help="Which axis of its world is up, where rolled cameras do not show it."),
     ] = None,
     force: Forced = False,
 ) -> None:

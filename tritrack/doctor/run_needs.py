@@ -49,7 +49,9 @@ def _pictures(settings: Settings) -> str:
         f"view {view.number}: {view.source_size[0]}x{view.source_size[1]}, {view.fps:.4g} a second"
         for view in clip.views
     )
-    return f"{views}; {'calibrated' if clip.rig else 'no calibration: the person tells it'}"
+    return (
+        f"{views}; {'calibrated' if clip.rig else 'no calibration: it is computed from the person'}"
+    )
 
 
 def _disk(out: Path) -> Finding:

@@ -82,7 +82,7 @@ def mark_poles(asked: Asked, out: Path, console: Console) -> Result:
     settings = config_file.load(asked.clip)
     with open_album(settings, console) as album:
         if len(album.views) < 2:
-            raise CalibrationError(f"{asked.clip} has one view: poles tell of two cameras")
+            raise CalibrationError(f"{asked.clip} has one view: poles are of two cameras")
         if before is not None:
             clicked = any(pole.cam1_px or pole.cam2_px for pole in before.poles)
             refuse_other_size(asked.points, before, album.size, clicked)
@@ -191,6 +191,6 @@ def _hear(
 
 def _written(method: MarkingMethod, sheet: Sheet, name: str) -> str:
     if method.write is None:
-        raise SheetError("markers tell no whole calibration: there is nothing to save but points")
+        raise SheetError("markers give no whole calibration: there is nothing to save but points")
     method.write(sheet)
     return f"written to {name}"

@@ -152,7 +152,7 @@ def common_size(sizes: Sequence[Size]) -> Size:
     for other in sizes:
         if abs(first[0] * other[1] / (first[1] * other[0]) - 1.0) > SAME_ASPECT:
             raise ClipError(
-                "the cameras' pictures differ in shape ({}x{} and {}x{}): film both alike".format(
+                "the cameras' pictures differ in shape ({}x{} and {}x{}): record both alike".format(
                     *first, *other
                 )
             )

@@ -187,7 +187,7 @@ def _clip_of(run: PastRun, settings: Settings) -> Clip:
     except ClipError as error:
         raise RetouchError(f"{error}; name the run's video with --video") from error
     if not isinstance(clip.views[0].source, str):
-        raise RetouchError(f"{run.folder} is of a camera: name a film of it with --video")
+        raise RetouchError(f"{run.folder} is of a camera: name a video of it with --video")
     return clip
 
 
