@@ -126,9 +126,9 @@ def test_what_to_do_with_the_notes_names_the_video_and_what_they_are_of(tmp_path
     run = open_run(run_of(tmp_path / "run", tmp_path / "gone.avi"))
     video = Path("my dance.avi")
     assert how_to_go_on(video, run).endswith("these notes: tritrack single 'my dance.avi'")
-    run.poses["views"] = np.full(4, "both")
+    run.poses["seen"] = np.ones((4, 2), np.bool_)
     said = how_to_go_on(video, run)
-    assert "two cameras" in said
+    assert "other cameras too" in said
     assert said.endswith("tritrack single 'my dance.avi'")
 
 
