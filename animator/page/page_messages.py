@@ -41,7 +41,7 @@ class ShownPosture(msgspec.Struct, frozen=True):
     """What the body is doing."""
 
     name: str
-    """That of what is under way, else of what was performed last."""
+    """Name of the posture under way, else of the last one performed."""
     doing: str
     """"" while nothing is under way."""
     times: int

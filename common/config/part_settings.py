@@ -40,7 +40,7 @@ class CameraSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     background: str = ""
     """A picture of the empty room, or a video of it."""
     calibrated_as: str = ""
-    """Its name in the calibration; by its place in the file when empty."""
+    """Name of the camera in the calibration; by its place in the file when empty."""
 
     def __post_init__(self) -> None:
         """Refuse a view with two sources."""

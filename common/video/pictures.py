@@ -94,12 +94,12 @@ class Decoded(msgspec.Struct, frozen=True):
     """One picture of a source."""
 
     index: int
-    """Its place in the source, also where only every n-th is taken."""
+    """Number of the frame in the source, also where only every n-th is taken."""
     grabbed_s: float
     """When it was grabbed, by this host's monotonic clock."""
     picture: Image
     large: Image | None = None
-    """The same picture at the second size, where one was asked for."""
+    """The frame's picture at the second size, where one was asked for."""
 
 
 class Reader(Protocol):

@@ -1,1 +1,1 @@
-"""Teaching the network of landmarks on films that the user has, by another pose estimator."""
+"""Teaching the network of landmarks on videos that the user has, by another pose estimator."""

@@ -1,4 +1,4 @@
-"""A film's frames as examples: the window about the person, and the joints that a teacher sees."""
+"""A video's frames as examples: the window about the person, and the joints that a teacher sees."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -30,11 +30,11 @@ from viewer.room.background_source import background_of_film
 SIZE: Final = "640x480"
 """Bound of the picture that windows are cut from."""
 MOST: Final = 3000
-"""Frames of one film, spread over it, that are looked at."""
+"""Frames of one video, spread over it, that are looked at."""
 TAUGHT, FEWEST = 0.5, 8
 """Joints that the teacher is surer of are taught; a frame with fewer of them is not."""
 HELD_SHARE: Final = 0.2
-"""Of a film, its end: nothing is learnt from it, it tells whether the network became better."""
+"""Of a video, its end: nothing is learnt from it, it tells whether the network became better."""
 ASIDE: Final = 0.04
 """Standard deviation of the person's middle from the window's, in sides."""
 ELSEWHERE: Final = -1000.0
@@ -42,7 +42,7 @@ ELSEWHERE: Final = -1000.0
 
 
 class Looked(NamedTuple):
-    """What a film gives."""
+    """What a video gives."""
 
     learnt: Path
     """A folder of examples, as `PictureStore` reads them."""
@@ -51,7 +51,7 @@ class Looked(NamedTuple):
 
 
 def looked_through(film: Path, teacher: str, folder: Path, tell: Tell) -> Looked:
-    """Look through a film with its teacher, where that is not done yet.
+    """Look through a video with its teacher, where that is not done yet.
 
     Args:
         film: Of one camera that stands still.
@@ -60,9 +60,9 @@ def looked_through(film: Path, teacher: str, folder: Path, tell: Tell) -> Looked
         tell: Is told the share that is done.
 
     Raises:
-        TrainingError: When the teacher sees nobody.
+        TrainingError: When the teacher sees no person.
         SettingsError: When the teacher cannot be used.
-        ClipError, Undecodable, DecoderDied: When the film cannot.
+        ClipError, Undecodable, DecoderDied: When the video cannot.
     """
     looked = Looked(folder / "learnt", folder / "held")
     if not (is_drawn(looked.learnt) and is_drawn(looked.held)):
@@ -103,7 +103,7 @@ def example_of(
 
     Args:
         picture: (H, W, 3)
-        mask: (H, W) the outline; where that is empty, one is drawn about the joints.
+        mask: (H, W) the silhouette; where that is empty, one is drawn about the joints.
         shown: What the teacher sees.
         rng: Source of how the person is framed.
     """
@@ -131,7 +131,7 @@ def example_of(
 
 
 def _framed(joints_px: NDArray[np.float64], rng: np.random.Generator) -> Window:
-    """A window about joints, as those of made-up people lie about them."""
+    """A window about joints, as those of synthetic people lie about them."""
     low, high = joints_px.min(axis=0), joints_px.max(axis=0)
     side = max(8.0, float((high - low).max()) * FRAMED * math.exp(rng.uniform(*FRAME)))
     middle = (low + high) / 2 + ASIDE * side * rng.normal(0.0, 1.0, 2)

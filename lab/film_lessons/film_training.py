@@ -1,4 +1,4 @@
-"""Teaching the shipped network of landmarks on films, and whether that made it better."""
+"""Teaching the shipped network of landmarks on videos, and whether that made it better."""
 
 import multiprocessing
 from collections.abc import Sequence
@@ -57,7 +57,7 @@ class Plan(NamedTuple):
     anny_people: int = 150
     """Synthetic people of the Anny model that are shown as well."""
     held_back: int = 40
-    """Made-up people by whom it is told whether anything was forgotten."""
+    """Synthetic people by whom it is told whether anything was forgotten."""
     backdrops: int = 600
     batches: int = 500
     batch: int = 96
@@ -67,13 +67,13 @@ class Verdict(NamedTuple):
     """How far joints are off, statures, before and after."""
 
     film: tuple[float, float]
-    """Of the films' ends."""
+    """Of the videos' ends."""
     made_up: tuple[float, float]
-    """Of made-up people."""
+    """Of synthetic people."""
 
     @property
     def better(self) -> bool:
-        """Whether it became better on the films, and forgot hardly anything."""
+        """Whether it became better on the videos, and forgot hardly anything."""
         return self.film[1] < self.film[0] and self.made_up[1] < FORGETS * self.made_up[0]
 
     def line(self) -> str:
@@ -97,7 +97,7 @@ class Wanted(NamedTuple):
 def teach_on_films(
     films: Sequence[Path], teacher: str, out: Path, console: Console, plan: Plan = Plan()
 ) -> Facts:
-    """Teach the shipped network on films and write it, if it became better; what was looked
+    """Teach the shipped network on videos and write it, if it became better; what was looked
     through, drawn and learnt is kept in `<out>.work`: the next call goes on from there.
 
     Args:
@@ -108,7 +108,7 @@ def teach_on_films(
         plan: How much is shown.
 
     Raises:
-        TrainingError: When too little of anybody is seen, or it became no better.
+        TrainingError: When too little of any person is seen, or it became no better.
     """
     folder = work_of(out)
     looked = _looked(films, teacher, folder, console)
@@ -143,7 +143,7 @@ def _looked(films: Sequence[Path], teacher: str, folder: Path, console: Console)
 
 
 def _drawn(folder: Path, plan: Plan, console: Console) -> list[Path]:
-    """Made-up people: our own, those of Anny, and last those who are held back."""
+    """Synthetic people: our own, those of Anny, and last those who are held back."""
     parts = [
         Part(folder / "own", FIRST, plan.people),
         Part(folder / "anny", FIRST, plan.anny_people, anny=True),
@@ -156,7 +156,7 @@ def _drawn(folder: Path, plan: Plan, console: Console) -> list[Path]:
 
 
 def composed(wanted: Wanted) -> list[Composite]:
-    """One batch: of films and of made-up people, all lit, turned and spoilt in ever new ways."""
+    """One batch: of videos and of synthetic people, all lit, turned and spoilt in ever new ways."""
     cv2.setNumThreads(1)
     films, made_up = _opened(wanted.films), _opened(wanted.made_up)
     backdrops, rng = _backdrops(wanted.plan), np.random.default_rng([wanted.at, 83])
@@ -205,7 +205,7 @@ def _learnt(wanted: Wanted, kept: Path, console: Console) -> Work:
 
 
 def _off(network: nn.Module, held: Wanted) -> tuple[float, float]:
-    """How far joints are off, of the films' ends as they are, and of made-up people."""
+    """How far joints are off, of the videos' ends as they are, and of synthetic people."""
     films = _opened(held.films)
     plain = [_plain(films[at]) for at in range(len(films))]
     rng, made_up, backdrops = (
@@ -221,7 +221,7 @@ def _off(network: nn.Module, held: Wanted) -> tuple[float, float]:
 
 
 def _plain(example: PictureExample) -> Composite:
-    """An example of a film as it was filmed."""
+    """An example of a video as it was recorded."""
     joints = example.joints_px
     inside = np.all((joints > 0) & (joints < len(example.body)), axis=1)
     outline = example.outline * np.uint8(255)

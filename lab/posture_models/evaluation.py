@@ -46,7 +46,7 @@ class Outcome(NamedTuple):
     fit: float = math.nan
     """Log-likelihood of a frame of what was named, on average."""
     fit_of_others: float = math.nan
-    """The same of the best posture but the truth: what would be named had it not been learnt."""
+    """Fit of the best posture but the truth: what would be named had it not been learnt."""
     known: bool = True
     """The truth has a model."""
 
