@@ -1,7 +1,6 @@
 """The animator process: everything that is said, shown on the live page."""
 
 import logging
-import os
 import threading
 import time
 from multiprocessing.connection import Connection
@@ -21,6 +20,7 @@ from common.bus.process import READY_S, Heart, ProcessContext, process, settle
 from common.bus.rate import Pace
 from common.config.settings import Settings
 from common.npz_file import Facts
+from common.platform.platforms import platform
 from common.rig.camera import paper_rig
 
 HEAR_S: Final = 0.05
@@ -184,7 +184,7 @@ def main(
         BusError: When the integrator does not answer.
     """
     with process("animator", context) as stop:
-        os.nice(BEHIND)
+        platform().give_way(BEHIND)
         own = entrance or entrance_of(settings.page)
         page = LivePage(title, settings.page.port, context.supervised, own)
         told = page.address if entrance else invitation_of(own, settings.page.port)

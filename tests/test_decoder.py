@@ -3,7 +3,6 @@
 import io
 import json
 import os
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, cast
@@ -12,6 +11,7 @@ import cv2
 import numpy as np
 import pytest
 
+from common.platform.platform import Asker
 from common.video import decoder
 from common.video.decoder import Grabbed, OpenFilm, Refused, grabs, judged, opened, say
 from common.video.decoding import DAMAGED, END, FRAME, HEADER, INFO, MAGIC, REFUSED, SKIPPED, TIMES
@@ -328,19 +328,15 @@ def test_a_refusal_is_an_answer_and_the_next_source_is_served(
         came.append(os.read(read, 1 << 12))  # what was answered before does not wait
         say(answers, INFO, None, b"good")
 
-    with os.fdopen(read, "rb") as heard, open(os.devnull, encoding="utf-8") as nothing:
-        lines = io.StringIO('{"source": "bad"}\n{"source": "good"}\n')
-        monkeypatch.setattr(lines, "fileno", nothing.fileno, raising=False)
-        monkeypatch.setattr(sys, "stdin", lines)
-        monkeypatch.setattr(sys, "argv", ["decoder", str(write)])
+    with os.fdopen(read, "rb") as heard, os.fdopen(write, "wb") as said:
+        lines = io.BytesIO(b'{"source": "bad"}\n{"source": "good"}\n')
         monkeypatch.setattr(decoder, "Complaints", Words)
         monkeypatch.setattr(decoder, "serve", serve)
-        monkeypatch.setattr(decoder, "end_with_pipe", done.append)
         monkeypatch.setattr("cv2.setNumThreads", done.append)
-        decoder.main()
+        decoder.main(Asker(lines, said))
         answers = Answers()
         answers.write(came[0] + os.read(heard.fileno(), 1 << 12))
-        assert done == [nothing.fileno(), 1, {"source": "bad"}, {"source": "good"}]
+        assert done == [1, {"source": "bad"}, {"source": "good"}]
     assert [*answers.parted()] == [
         (REFUSED, 0, 0.0, b"bad is bad: mend it"),
         (INFO, 0, 0.0, b"good"),

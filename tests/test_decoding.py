@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from common.child.child_process import Broken
+from common.platform.platform import Broken
 from common.video import decoding
 from common.video.decoding import (
     DAMAGED,
@@ -56,7 +56,7 @@ class Scripted:
         self.done: list[str] = []
         self.pid = 4711
 
-    def __call__(self, module: str, stall_s: float) -> "Scripted":
+    def child(self, module: str, stall_s: float) -> "Scripted":
         self.begun.append((module, stall_s))
         return self
 
@@ -78,7 +78,7 @@ class Scripted:
 @pytest.fixture
 def script(monkeypatch: pytest.MonkeyPatch) -> Scripted:
     child = Scripted()
-    monkeypatch.setattr(decoding, "Child", child)
+    monkeypatch.setattr(decoding, "platform", lambda: child)
     return child
 
 

@@ -34,16 +34,14 @@ IDS = [
     *(f"P{n}" for n in range(1, 61)),
     *(f"T{n}" for n in range(1, 29)),
 ]
-SHELLS = {
-    *("common.child.child_process", "common.video.clips", "common.video.decoder"),
-    *("common.video.decoding", "viewer.__main__", "viewer.capture"),
-    *("viewer.landmarks.landmark_sources", "viewer.landmarks.mediapipe_child"),
-    "viewer.room.background_source",
-    *("viewer.landmarks.mediapipe_protocol", "viewer.landmarks.mediapipe_source"),
-    *("integrator.__main__", "integrator.live_rig.live_calibration"),
-    "integrator.live_rig.rig_solver",
-}
-"""What fetches pictures, landmarks or rigs: it may use what only some systems have."""
+LINUX = "common/platform/linux"
+"""The platform that uses what only Linux has."""
+OF_LINUX = re.compile(
+    r"\bfcntl\b|\bos\.fork\b|\bprctl\b|/proc\b|memfd|pthread_sigmask|forkserver|waitpid"
+)
+OF_LINUX_ELSEWHERE = {"lab/bench/bench.py": "/proc", "tritrack/commands/options.py": "/proc"}
+"""Names of that which other files may have: the bench says which processor it ran on, the options
+speak of a folder that is none."""
 HIDING = """
 import importlib, importlib.abc, os, signal, sys
 
@@ -121,16 +119,34 @@ def test_no_imports_turn_in_circles(found: list[Source]) -> None:
     assert circles(pointing((a, b) for a, b in rooms if a != b)) == []
 
 
-def test_steps_and_types_are_imported_where_no_process_can_be_forked(found: list[Source]) -> None:
-    """By themselves, and without what runs them."""
+def test_what_lies_below_the_shells_is_imported_where_no_process_can_be_forked(
+    found: list[Source],
+) -> None:
+    """By itself, and without what runs it; all but the platform that uses that."""
     rooms = {"common", "calibration", "viewer", "integrator", "recognizer"}
     names = {
         ".".join(each.path.with_suffix("").parts).removesuffix(".__init__")
         for each in found
-        if each.package in rooms
+        if each.package in rooms and each.folder != LINUX
     }
-    assert in_vain(names - SHELLS) == []
-    assert in_vain(SHELLS) == sorted(SHELLS)
+    assert in_vain(names) == []
+    assert in_vain({"common.platform.linux.linux_platform"}) != []
+
+
+def test_what_only_linux_has_is_named_in_its_platform_alone(found: list[Source]) -> None:
+    for each in found:
+        named = set(OF_LINUX.findall((ROOT / each.path).read_text()))
+        allowed = {OF_LINUX_ELSEWHERE.get(each.path.as_posix(), "")}
+        assert each.folder == LINUX or named <= allowed, f"{each.path} names {named}"
+
+
+def test_no_file_but_the_platforms_table_knows_which_platform_it_is_on(
+    found: list[Source],
+) -> None:
+    inside = {each.path for each in found if each.folder.startswith("common/platform")}
+    for importer, file in arrows(ROOT, found):
+        public = file.stem in {"__init__", "platform", "platforms"}
+        assert importer in inside or file not in inside or public, f"{importer} imports {file}"
 
 
 def in_vain(names: set[str]) -> list[str]:

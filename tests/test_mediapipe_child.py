@@ -1,15 +1,12 @@
 """The child that looks by MediaPipe, in this process: what it reads, and what it answers."""
 
 import io
-import mmap
-import os
-import sys
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from common.platform.platform import Asker
 from viewer.landmarks import mediapipe_child
 from viewer.landmarks.mediapipe_protocol import (
     BYTES,
@@ -62,56 +59,35 @@ def test_an_answer_is_sent_at_once() -> None:
     assert flushed == [b"abc"]
 
 
-def answered(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, lines: str, red: int
-) -> tuple[list[Answer], list[int]]:
-    """What the child's main function answers to some lines, and whose end it waits for."""
-    memory = os.memfd_create("picture")
-    os.truncate(memory, 3 * WIDTH * HEIGHT)
-    with mmap.mmap(memory, 3 * WIDTH * HEIGHT) as shared:
-        shared[:3] = bytes([1, 2, red])
-    (tmp_path / "lines").write_text(lines)
-    ear, mouth = os.pipe()
-    told = ["child", *map(str, (mouth, memory, WIDTH, HEIGHT)), "more"]
-    monkeypatch.setattr(sys, "argv", told)
-    ends: list[int] = []
-    monkeypatch.setattr(mediapipe_child, "end_with_pipe", ends.append)
-    with (tmp_path / "lines").open() as stdin:
-        monkeypatch.setattr(sys, "stdin", stdin)
-        mediapipe_child.main()
-        due = stdin.fileno()
-    with os.fdopen(ear, "rb") as heard:
-        said = heard.read(16 * BYTES) if os.get_blocking(ear) else b""
-    os.close(memory)
-    assert ends == [due]
-    return [answer_of(said[at : at + BYTES]) for at in range(0, len(said), BYTES)], ends
+def answered(lines: list[bytes], red: int) -> list[Answer]:
+    """What the child's main function answers to some lines about a picture."""
+    picture = np.zeros((HEIGHT, WIDTH, 3), np.uint8)
+    picture[0, 0] = 1, 2, red
+    answers = io.BytesIO()
+    mediapipe_child.main(Asker(lines, answers, picture))
+    said = answers.getvalue()
+    return [answer_of(said[at : at + BYTES]) for at in range(0, len(said), BYTES)]
 
 
-def test_each_line_is_answered_with_its_frame(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def test_each_line_is_answered_with_its_frame(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(mediapipe_child, "opened", Pose)
-    answers, _ = answered(monkeypatch, tmp_path, "4\n17\n", red=25)
+    answers = answered([b"4\n", b"17\n"], red=25)
     assert [(one.kind, one.frame) for one in answers] == [(READY, -1), (POINTS, 4), (POINTS, 17)]
     assert answers[1].points[0] == pytest.approx([0.25 * WIDTH, 0.5 * HEIGHT, 0.0])
     assert answers[1].points[32] == pytest.approx([0.57 * WIDTH, 1.14 * HEIGHT, 0.5])
 
 
-def test_a_picture_of_nobody_is_answered_too(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def test_a_picture_of_nobody_is_answered_too(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(mediapipe_child, "opened", Pose)
-    answers, _ = answered(monkeypatch, tmp_path, "6\n", red=0)
+    answers = answered([b"6"], red=0)
     assert [(one.kind, one.frame) for one in answers] == [(READY, -1), (NOBODY, 6)]
 
 
-def test_what_keeps_it_from_its_work_is_said_and_ends_it(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def test_what_keeps_it_from_its_work_is_said_and_ends_it(monkeypatch: pytest.MonkeyPatch) -> None:
     def opened() -> None:
         raise ImportError("no module named attrs")
 
     monkeypatch.setattr(mediapipe_child, "opened", opened)
-    answers, _ = answered(monkeypatch, tmp_path, "4\n", red=25)
+    answers = answered([b"4"], red=25)
     assert [one.kind for one in answers] == [REFUSED]
     assert answers[0].text == "ImportError: no module named attrs"

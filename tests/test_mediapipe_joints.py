@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from common.child.child_process import Broken
+from common.platform.platform import Broken
 from viewer.landmarks.fifteen_joints import facing_deg, fifteen, fifteen_shares
 from viewer.landmarks.keypoint_layouts import body_points
 from viewer.landmarks.mediapipe_joints import landmarks_of

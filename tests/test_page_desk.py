@@ -280,12 +280,12 @@ def test_a_page_is_told_the_end_and_waited_for_while_it_is_looked_at(
     """Its process is begun with the desk; where it has closed already nobody waits."""
     monkeypatch.setattr("runtime.live.page_desk.Watched", Page)
     settings, context = Settings(page=PageSettings(port=9)), ProcessContext(True)
-    zygote: Any = object()
-    desk = PageDesk(settings, tmp_path, "a run", context, zygote)
+    launcher: Any = object()
+    desk = PageDesk(settings, tmp_path, "a run", context, launcher)
     page: Any = desk.watched
     assert desk.parts == [page.part]
     own, beside, title, ending, _ = page.part.arguments
-    assert (own, beside, title, page.part.zygote) == (settings, context, "a run", zygote)
+    assert (own, beside, title, page.part.launcher) == (settings, context, "a run", launcher)
     waited: list[float] = []
     stop = SimpleNamespace(wait=waited.append)
     said: list[int] = []

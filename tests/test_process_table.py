@@ -1,17 +1,13 @@
-"""The table of a live run: who is started in which order, of what, and how one is ended."""
+"""The table of a live run: who is started in which order, how, and how one is ended."""
 
-import os
-import signal
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
 from typing import Any
 
 import pytest
 
 from common.bus.process import ProcessContext
 from common.config.settings import Settings
+from common.platform.platform import Job, Started
 from common.video.clip_facts import Clip, Meta, View
-from runtime.forking.zygote import FORK, SPAWN
 from runtime.live import process_table
 from runtime.live.process_table import (
     END_S,
@@ -39,8 +35,8 @@ def clip(*numbers: int) -> Clip:
 
 
 def test_who_listens_comes_before_who_speaks_and_the_run_lasts_as_long_as_its_viewers() -> None:
-    settings, of, zygote = Settings(metrics="127.0.0.1:1"), clip(1, 2), object()
-    parts = live_parts(settings, of, CONTEXT, zygote, True)  # type: ignore[arg-type]
+    settings, of, launcher = Settings(metrics="127.0.0.1:1"), clip(1, 2), object()
+    parts = live_parts(settings, of, CONTEXT, launcher, True)  # type: ignore[arg-type]
     assert [(part.name, part.main, part.arguments) for part in parts] == [
         ("integrator", integrator_main, (settings, of, CONTEXT)),
         ("recognizer", recognizer_main, (settings, 2 / 30, CONTEXT)),
@@ -52,7 +48,7 @@ def test_who_listens_comes_before_who_speaks_and_the_run_lasts_as_long_as_its_vi
     assert [part.beats for part in parts] == [True, False, False, True, True]
     assert [part.nests for part in parts] == [True, False, False, True, True]
     assert [part.spare for part in parts] == [False, False, True, False, False]
-    assert all(part.zygote is zygote and part.beside for part in parts)
+    assert all(part.launcher is launcher and part.beside for part in parts)
     assert names_of(of) == ("integrator", "recognizer", "viewer 1", "viewer 2")
 
 
@@ -66,7 +62,7 @@ def test_the_page_is_a_part_that_neither_leads_nor_beats() -> None:
     given: Any = (object(), object(), object())
     part = page_part(Settings(), CONTEXT, "title", given[0], given[1], given[2])
     assert part.arguments == (Settings(), CONTEXT, "title", given[0], given[1])
-    assert (part.name, part.main, part.zygote) == ("animator", animator_main, given[2])
+    assert (part.name, part.main, part.launcher) == ("animator", animator_main, given[2])
     assert (part.leads, part.beats, part.end_s) == (False, False, END_S)
 
 
@@ -139,142 +135,39 @@ def test_why_a_process_ended_is_what_it_said_or_its_code(
     assert last_words(running(Process(True, exitcode), words)) == told
 
 
-def test_a_part_whose_zygote_dies_is_a_new_python(monkeypatch: pytest.MonkeyPatch) -> None:
-    begun: list[object] = []
-
-    def start(part: Part, context: object) -> str:
-        begun.append(context)
-        if context is FORK:
-            raise EOFError
-        return part.name
-
-    class Warm:
-        context = FORK
-
-    monkeypatch.setattr(process_table, "_begun", start)
-    part = Part("viewer 1", viewer_main, ())
-    warm: Any = Warm()
-    given: list[Any] = [
-        process_table.started(part),
-        process_table.started(part._replace(zygote=warm)),
-    ]
-    assert given == ["viewer 1"] * 2
-    assert begun == [SPAWN, FORK, SPAWN]
-
-
-class End:
-    def __init__(self) -> None:
-        self.closed = False
-
-    def close(self) -> None:
-        self.closed = True
-
-
-class Context:
-    """Starts nothing: what it is asked, and how the supervisor is at that moment."""
+class Launching:
+    """A platform, or its launcher, that begins nothing."""
 
     def __init__(self) -> None:
-        self.ours, self.theirs = End(), End()
-        self.asked: dict[str, Any] = {}
-        self.at_start: tuple[dict[str, str], set[Any], list[str]] | None = None
-        self.doors: list[str] = []
+        self.jobs: list[Job] = []
 
-    def Pipe(self, duplex: bool) -> tuple[End, End]:
-        assert not duplex
-        return self.ours, self.theirs
-
-    def Process(self, **asked: Any) -> "Context":
-        self.asked = asked
-        return self
-
-    def start(self) -> None:
-        deaf = signal.pthread_sigmask(signal.SIG_BLOCK, ())
-        self.at_start = (dict(os.environ), deaf, [*self.doors])
-        assert not self.theirs.closed
-
-    @contextmanager
-    def adopting(self) -> Iterator[None]:
-        self.doors.append("adopting")
-        yield
-        self.doors.append("adopted")
+    def start(self, job: Job) -> Started:
+        self.jobs.append(job)
+        worker: Any = Process(heeds=True)
+        words: Any = Words()
+        return Started(worker, words)
 
 
-@pytest.mark.parametrize("forked", [True, False])
 @pytest.mark.parametrize("nests", [True, False])
-def test_a_part_is_begun_frugal_and_deaf_and_adopted_where_it_is_forked(
-    monkeypatch: pytest.MonkeyPatch, forked: bool, nests: bool
+def test_a_part_begins_by_its_launcher_else_as_the_platform_begins_one(
+    monkeypatch: pytest.MonkeyPatch, nests: bool
 ) -> None:
-    context: Any = Context()
-    monkeypatch.setattr(process_table, "adopting", context.adopting)
-    monkeypatch.setattr(process_table, "adopted", lambda *of: ("child", of))
-    if forked:
-        monkeypatch.setattr(process_table, "FORK", context)
+    platform, launcher = Launching(), Launching()
+    monkeypatch.setattr(process_table, "platform", lambda: platform)
     part = Part("viewer 1", viewer_main, ("given",), nests=nests)
-    before = signal.pthread_sigmask(signal.SIG_UNBLOCK, (signal.SIGINT, signal.SIGHUP))
-    running = process_table._begun(part, context)
-    after = signal.pthread_sigmask(signal.SIG_SETMASK, before)
-    assert not {signal.SIGINT, signal.SIGHUP} & after
-    assert context.asked == {
-        "name": "viewer 1",
-        "target": process_table._guarded,
-        "args": ("viewer 1", viewer_main, ("given",), context.theirs, forked),
-        "daemon": not nests,
-    }
-    process: Any = ("child", (context, context.ours)) if forked else context
-    assert running == Running(part, process, context.ours)
-    assert (context.theirs.closed, context.ours.closed) == (True, False)
-    environment, deaf, doors = context.at_start
-    assert environment["MALLOC_ARENA_MAX"] == environment["OPENBLAS_NUM_THREADS"] == "1"
-    assert {signal.SIGINT, signal.SIGHUP} <= deaf
-    assert doors == (["adopting"] if forked else [])
-    assert context.doors == (["adopting", "adopted"] if forked else [])
+    due = Job("viewer 1", process_table._guarded, ("viewer 1", viewer_main, ("given",)), nests)
+    one = process_table.started(part)
+    assert (platform.jobs, launcher.jobs) == ([due], [])
+    assert isinstance(one.process, Process)
+    assert isinstance(one.words, Words)
+    other: Any = launcher
+    process_table.started(part._replace(launcher=other))
+    assert (platform.jobs, launcher.jobs) == ([due], [due])
 
 
-def test_what_is_taken_over_is_the_supervisors_own_again_afterwards(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """One who is deaf to a hang-up himself stays so; starting the tracker lifts the block."""
-    monkeypatch.setenv("OMP_NUM_THREADS", "7")
-    monkeypatch.delenv("NUMBA_NUM_THREADS", raising=False)
-    at_start: list[set[Any]] = []
-
-    def ensure_running() -> None:
-        at_start.append(signal.pthread_sigmask(signal.SIG_UNBLOCK, (signal.SIGINT,)))
-
-    monkeypatch.setattr("multiprocessing.resource_tracker.ensure_running", ensure_running)
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGHUP,))
-    signal.pthread_sigmask(signal.SIG_UNBLOCK, (signal.SIGINT,))
-    try:
-        with suppress(OSError), process_table.inherited():
-            deaf = signal.pthread_sigmask(signal.SIG_BLOCK, ())
-            told = {name: os.environ[name] for name in process_table.FRUGAL}
-            os.environ["LEFT_BEHIND"] = "1"
-            raise OSError("no process")
-    finally:
-        after = signal.pthread_sigmask(signal.SIG_SETMASK, before)
-    assert told == {
-        "OMP_NUM_THREADS": "1",
-        "OPENBLAS_NUM_THREADS": "1",
-        "NUMBA_NUM_THREADS": "1",
-        "MALLOC_ARENA_MAX": "1",
-    }
-    assert {signal.SIGINT, signal.SIGHUP} <= at_start[0]
-    assert {signal.SIGINT, signal.SIGHUP} <= deaf
-    assert signal.SIGTERM not in deaf
-    assert (signal.SIGHUP in after, signal.SIGINT in after) == (True, False)
-    assert os.environ["OMP_NUM_THREADS"] == "7"
-    assert "NUMBA_NUM_THREADS" not in os.environ
-    assert "LEFT_BEHIND" not in os.environ
-
-
-@pytest.mark.parametrize("forked", [True, False])
-def test_a_part_runs_under_its_name_hears_its_end_and_says_why_it_fails(
-    monkeypatch: pytest.MonkeyPatch, forked: bool
-) -> None:
+def test_a_part_says_why_it_fails(monkeypatch: pytest.MonkeyPatch) -> None:
     called: list[Any] = []
     words: Any = object()
-    for name in ("be_adopted", "be_shown_as", "end_with_parent"):
-        monkeypatch.setattr(process_table, name, lambda *of, name=name: called.append((name, *of)))
 
     def confessed(*of: Any) -> int:
         called.append(of)
@@ -284,21 +177,13 @@ def test_a_part_runs_under_its_name_hears_its_end_and_says_why_it_fails(
     error = ValueError("no camera 0")
 
     def main(*arguments: Any) -> None:
-        deaf = signal.pthread_sigmask(signal.SIG_BLOCK, ())
-        called.append((arguments, signal.SIGTERM in deaf))
+        called.append(arguments)
         if arguments == ("fails",):
             raise error
 
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGTERM,))
-    try:
-        process_table._guarded("viewer 1", main, ("a", 2), words, forked)
-        began: list[Any] = [("be_adopted", words)] if forked else []
-        began += [("be_shown_as", "viewer 1"), ("end_with_parent",)]
-        assert called == [*began, (("a", 2), False)]
-        called.clear()
-        with pytest.raises(SystemExit) as ended:
-            process_table._guarded("viewer 1", main, ("fails",), words, forked)
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+    process_table._guarded("viewer 1", main, ("a", 2), words)
+    assert called == [("a", 2)]
+    with pytest.raises(SystemExit) as ended:
+        process_table._guarded("viewer 1", main, ("fails",), words)
     assert ended.value.code == 7
     assert called[-1] == ("viewer 1", error, words)

@@ -13,8 +13,8 @@ from typing import Any
 
 import pytest
 
-from runtime.forking import reparenting
-from runtime.forking.reparenting import ReparentedProcess, adopted, adopting
+from common.platform.linux import reparenting
+from common.platform.linux.reparenting import ReparentedProcess, adopted, adopting
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="parts are adopted on Linux alone")
 SPAWN = get_context("spawn")
@@ -109,7 +109,7 @@ def test_who_goes_on_as_a_child_of_its_grandparent_is_a_process_of_its_own() -> 
     has another parent."""
     code = (
         "import os, sys; sys.path.insert(0, sys.argv[1])\n"
-        "from runtime.forking.reparenting import be_adopted\n"
+        "from common.platform.linux.reparenting import be_adopted\n"
         "class Words:\n"
         "    def send(self, pid): print(os.getpid(), pid, flush=True)\n"
         "first = os.getpid()\n"

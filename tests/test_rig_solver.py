@@ -65,10 +65,11 @@ def test_a_search_that_cannot_be_begun_is_answered(
 ) -> None:
     """Its asker would wait for ever, and never ask again."""
 
-    def refuse(*_: object) -> None:
-        raise error
+    class Refusing:
+        def child(self, *_: object) -> None:
+            raise error
 
-    monkeypatch.setattr(rig_solver, "Child", refuse)
+    monkeypatch.setattr(rig_solver, "platform", Refusing)
     solver = RigSolver()
     solver.ask(FEW)
     answer = answer_of(solver, 5.0)

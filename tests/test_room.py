@@ -11,7 +11,7 @@ from common.bus.control_messages import Pulse
 from common.bus.message_codec import encode
 from common.config.part_settings import BusSettings, PageSettings
 from common.config.settings import Settings
-from runtime.forking.zygote import Zygote
+from common.platform.platform import Launcher
 from runtime.live.supervise import PartFailed
 from runtime.serving.room import AGAIN_S, SITE, Room, site_main
 from runtime.serving.served_rooms import House
@@ -52,7 +52,7 @@ class Stopped:
 
     pulse = None
 
-    def __init__(self, site: Site, _zygote: object) -> None:
+    def __init__(self, site: Site, _launcher: object) -> None:
         self.site = site
 
     def ask(self) -> None:
@@ -68,7 +68,7 @@ def test_a_site_that_never_began_is_not_said_to_have_a_run(
     monkeypatch.setattr("runtime.serving.served_rooms.Room", Stopped)
     (tmp_path / "configs").mkdir()
     said: list[str] = []
-    house = House(cast(Zygote, None), said.append, said.append)
+    house = House(cast(Launcher, None), said.append, said.append)
     site = Site("hall", Settings(), tmp_path / "configs" / ".." / "runs")
     house.become({"hall": site})
     house.become({})
@@ -117,12 +117,12 @@ def test_a_site_is_a_part_that_nests_and_its_pulses_are_its_own_until_it_is_begu
     parts: list[Part],
 ) -> None:
     site = Site("hall", Settings(bus=BusSettings(endpoint="auto")), Path("runs"))
-    zygote: Any = object()
-    room = Room(site, zygote)
+    launcher: Any = object()
+    room = Room(site, launcher)
     part = parts[0].part
     own, words = part.arguments
     assert (part.name, part.main, part.end_s) == ("hall", site_main, 20.0)
-    assert (part.beats, part.nests, part.leads, part.zygote) == (True, True, False, zygote)
+    assert (part.beats, part.nests, part.leads, part.launcher) == (True, True, False, launcher)
     assert own.settings.bus.endpoint.startswith("tcp/127.0.0.1:"), "chosen"
     assert (own.name, own.out, room.site) == ("hall", Path("runs"), site)
     words.send_bytes(encode(Pulse(process="hall", state="ready", frames=3)))

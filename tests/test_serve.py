@@ -21,7 +21,7 @@ pytest.importorskip("prometheus_client", reason="pip install 'tritrack[metrics]'
 from metrics_reader import read
 from spoiling import copied, edit_json, refilmed
 from test_metrics_server import asked, free_address
-from test_parent_death import ended_within
+from test_own_process import ended_within
 
 pytestmark = pytest.mark.slow
 

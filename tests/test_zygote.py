@@ -12,10 +12,11 @@ from typing import Any
 
 import psutil
 import pytest
-from test_parent_death import PATIENCE_S, SOON_S, ended_within, sleeps, written
+from test_own_process import PATIENCE_S, SOON_S, ended_within, sleeps, written
 
-from runtime.forking.zygote import SPAWN, Zygote
-from runtime.live.process_table import Part, end, inherited, started
+from common.platform.linux.zygote import Zygote
+from runtime.live.process_table import Part, end, started
+from runtime.live.session import WARMED
 from runtime.live.supervise import PartFailed, watched
 
 pytestmark = [
@@ -25,25 +26,24 @@ pytestmark = [
 
 PARENT = """
 import sys, threading, time
-from test_parent_death import sleeps
-from runtime.live.process_table import Part, inherited, started
-from runtime.forking.zygote import Zygote
+from test_own_process import sleeps
+from runtime.live.process_table import Part, started
+from common.platform.linux.zygote import Zygote
 if __name__ == "__main__":
-    zygote = Zygote(inherited)
+    zygote = Zygote("runtime.warming.warmed")
     zygote.wait(threading.Event(), lambda: None)
-    child = started(Part("viewer 1", sleeps, (sys.argv[1],), zygote=zygote))
+    child = started(Part("viewer 1", sleeps, (sys.argv[1],), launcher=zygote))
     time.sleep(600)
 """
 
 
 WITHOUT = """
 import threading
-from runtime.live.process_table import inherited
-from runtime.forking.zygote import SPAWN, Zygote
+from common.platform.linux.zygote import Zygote
 if __name__ == "__main__":
-    zygote = Zygote(inherited)
+    zygote = Zygote("runtime.warming.warmed")
     zygote.wait(threading.Event(), lambda: None)
-    print(zygote.context is SPAWN)
+    print(not zygote.warm)
 """
 
 
@@ -51,10 +51,9 @@ LOADING = """
 import sys, time
 from multiprocessing import forkserver
 from pathlib import Path
-from runtime.live.process_table import inherited
-from runtime.forking.zygote import Zygote
+from common.platform.linux.zygote import Zygote
 if __name__ == "__main__":
-    zygote = Zygote(inherited)
+    zygote = Zygote("runtime.warming.warmed")
     Path(sys.argv[1]).write_text(str(forkserver._forkserver._forkserver_pid))
     time.sleep(600)
 """
@@ -62,9 +61,9 @@ if __name__ == "__main__":
 
 @pytest.fixture(scope="module")
 def zygote() -> Zygote:
-    one = Zygote(inherited)
+    one = Zygote(WARMED)
     one.wait(threading.Event(), lambda: None)
-    assert one.context is not SPAWN
+    assert one.warm
     return one
 
 
@@ -82,9 +81,9 @@ def says_what_it_has(path: str) -> None:
 
 def is_a_site(folder: str) -> None:
     """A part with a run of its own, which has a zygote in its turn."""
-    own = Zygote(inherited)
-    assert own.context is not SPAWN, "it was not ready at once"
-    part = started(Part("viewer 1", sleeps, (f"{folder}/part",), zygote=own))
+    own = Zygote(WARMED)
+    assert own.warm, "it was not ready at once"
+    part = started(Part("viewer 1", sleeps, (f"{folder}/part",), launcher=own))
     sleeps(f"{folder}/site")
     end(part)
 
@@ -97,7 +96,7 @@ def test_a_part_has_all_modules_as_it_begins_and_no_threads_but_the_one_that_end
     zygote: Zygote, tmp_path: Path
 ) -> None:
     """Libraries' threads would be lacking in it, and what waits for them would wait for ever."""
-    one = started(Part("viewer 1", says_what_it_has, (str(tmp_path / "said"),), zygote=zygote))
+    one = started(Part("viewer 1", says_what_it_has, (str(tmp_path / "said"),), launcher=zygote))
     try:
         assert written(tmp_path / "said.pid") == one.process.pid
         assert (tmp_path / "said").read_text() == "all True, 2 threads"
@@ -107,7 +106,7 @@ def test_a_part_has_all_modules_as_it_begins_and_no_threads_but_the_one_that_end
 
 
 def test_a_part_is_deaf_to_what_a_terminal_says_to_all(zygote: Zygote, tmp_path: Path) -> None:
-    one = started(Part("viewer 1", sleeps, (str(tmp_path / "pid"),), zygote=zygote))
+    one = started(Part("viewer 1", sleeps, (str(tmp_path / "pid"),), launcher=zygote))
     try:
         pid = written(tmp_path / "pid")
         for number in (signal.SIGINT, signal.SIGHUP):
@@ -121,11 +120,11 @@ def test_a_part_is_deaf_to_what_a_terminal_says_to_all(zygote: Zygote, tmp_path:
 def test_why_a_part_fails_and_how_it_was_killed_is_known_as_of_any_other(
     zygote: Zygote, tmp_path: Path
 ) -> None:
-    with watched(Part("viewer 1", fails, (), zygote=zygote)) as one:
+    with watched(Part("viewer 1", fails, (), launcher=zygote)) as one:
         one.running.process.join()
         with pytest.raises(PartFailed, match=r"viewer 1: .*no camera"):
             one.refuse_failure()
-    with watched(Part("viewer 1", sleeps, (str(tmp_path / "pid"),), zygote=zygote)) as one:
+    with watched(Part("viewer 1", sleeps, (str(tmp_path / "pid"),), launcher=zygote)) as one:
         os.kill(written(tmp_path / "pid"), signal.SIGKILL)
         one.running.process.join()
         assert one.running.process.exitcode == -signal.SIGKILL
@@ -138,7 +137,7 @@ def test_a_part_that_its_zygote_dies_before_forking_is_a_new_python(
     os.kill(before, signal.SIGSTOP)
     killed = threading.Timer(0.5, os.kill, (before, signal.SIGKILL))
     killed.start()
-    one = started(Part("viewer 1", sleeps, (str(tmp_path / "pid"),), zygote=zygote))
+    one = started(Part("viewer 1", sleeps, (str(tmp_path / "pid"),), launcher=zygote))
     killed.join()
     try:
         assert written(tmp_path / "pid") == one.process.pid
@@ -149,7 +148,7 @@ def test_a_part_that_its_zygote_dies_before_forking_is_a_new_python(
 def test_a_part_outlives_its_zygote_and_how_it_ends_is_known(
     zygote: Zygote, tmp_path: Path
 ) -> None:
-    with watched(Part("viewer 1", sleeps, (str(tmp_path / "pid"),), zygote=zygote)) as one:
+    with watched(Part("viewer 1", sleeps, (str(tmp_path / "pid"),), launcher=zygote)) as one:
         pid, before = written(tmp_path / "pid"), number_of_the_zygote()
         assert psutil.Process(pid).ppid() == os.getpid()
         os.kill(before, signal.SIGKILL)
@@ -167,7 +166,7 @@ def test_where_the_zygote_died_the_next_part_has_another(zygote: Zygote, tmp_pat
     before = number_of_the_zygote()
     os.kill(before, signal.SIGKILL)
     assert ended_within(before, SOON_S)
-    one = started(Part("viewer 1", sleeps, (str(tmp_path / "pid"),), zygote=zygote))
+    one = started(Part("viewer 1", sleeps, (str(tmp_path / "pid"),), launcher=zygote))
     try:
         assert written(tmp_path / "pid") == one.process.pid
         assert number_of_the_zygote() != before
@@ -217,7 +216,7 @@ def test_who_starts_a_part_again_is_not_held_up_while_the_next_zygote_loads(
     zygote: Zygote,
 ) -> None:
     """A supervisor that stood still for so long would be taken for hung."""
-    assert zygote.context is not SPAWN
+    assert zygote.warm
     before = number_of_the_zygote()
     os.kill(before, signal.SIGKILL)
     assert ended_within(before, SOON_S)
@@ -227,14 +226,14 @@ def test_who_starts_a_part_again_is_not_held_up_while_the_next_zygote_loads(
     while not zygote.ready():
         assert time.monotonic() - began_s < PATIENCE_S
         time.sleep(0.1)
-    assert zygote.context is not SPAWN
+    assert zygote.warm
 
 
 @pytest.mark.parametrize("stopped", [False, True], ids=["works", "is stopped"])
 def test_a_site_has_a_zygote_of_its_own_by_one_fork_more_and_takes_it_along(
     zygote: Zygote, tmp_path: Path, stopped: bool
 ) -> None:
-    one = started(Part("hall", is_a_site, (str(tmp_path),), nests=True, zygote=zygote))
+    one = started(Part("hall", is_a_site, (str(tmp_path),), nests=True, launcher=zygote))
     part, site = (psutil.Process(written(tmp_path / name)) for name in ("part", "site"))
     (own,) = set(site.children()) - {part}
     assert part.parent() == site
@@ -254,7 +253,7 @@ def test_a_zygote_that_is_asked_to_end_with_all_of_a_service_stays_for_its_forks
     zygote: Zygote, tmp_path: Path
 ) -> None:
     """As systemd ends a service; who works heeds SIGTERM, at once or as soon as it can."""
-    one = started(Part("hall", is_a_site, (str(tmp_path),), nests=True, zygote=zygote))
+    one = started(Part("hall", is_a_site, (str(tmp_path),), nests=True, launcher=zygote))
     part, site = (psutil.Process(written(tmp_path / name)) for name in ("part", "site"))
     for each in {*site.children(), psutil.Process(number_of_the_zygote())} - {part}:
         each.terminate()
@@ -269,9 +268,9 @@ def test_a_zygote_that_is_asked_to_end_with_all_of_a_service_stays_for_its_forks
 @pytest.mark.live
 def test_a_run_that_is_stopped_does_not_wait_for_it() -> None:
     code = (
-        "import threading, time; from runtime.live.process_table import inherited; "
-        "from runtime.forking.zygote import Zygote; stop = threading.Event(); stop.set(); "
-        "began = time.monotonic(); Zygote(inherited).wait(stop, print); "
+        "import threading, time; "
+        "from common.platform.linux.zygote import Zygote; stop = threading.Event(); stop.set(); "
+        "began = time.monotonic(); Zygote('runtime.warming.warmed').wait(stop, print); "
         "assert time.monotonic() - began < 0.5"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False, timeout=20).returncode == 0
@@ -282,10 +281,10 @@ def test_a_file_of_the_working_directory_is_not_taken_for_a_library(tmp_path: Pa
     code = (
         "import sys; sys.path = [path for path in sys.path if path]\n"
         "import threading; from runtime.live.process_table import inherited\n"
-        "from runtime.forking.zygote import SPAWN, Zygote\n"
+        "from common.platform.linux.zygote import Zygote\n"
         "if __name__ == '__main__':\n"
-        "    one = Zygote(inherited); one.wait(threading.Event(), lambda: None)\n"
-        "    assert one.context is not SPAWN\n"
+        "    one = Zygote('runtime.warming.warmed'); one.wait(threading.Event(), lambda: None)\n"
+        "    assert one.warm\n"
     )
     done = subprocess.run([sys.executable, "-c", code], check=False, cwd=tmp_path, timeout=120)
     assert done.returncode == 0

@@ -1,12 +1,10 @@
 """What the commands run by default, compiled once: what `make setup` waits for."""
 
-import sys
 import tempfile
 import time
 from pathlib import Path
 
 from common.cache_folder import mark_of_all
-from common.child.parent_death import end_with
 
 
 def compile_all() -> None:
@@ -27,8 +25,8 @@ def compile_all() -> None:
 
 def _run_all() -> None:
     from common.config.settings import Settings
-    from runtime.forking.parts_warmup import warm_up
     from runtime.offline.lockstep import Decoders, track_clip
+    from runtime.warming.parts_warmup import warm_up
     from tritrack.demo import made_clip
 
     with tempfile.TemporaryDirectory(prefix="tritrack-first-") as folder, Decoders() as decoders:
@@ -39,6 +37,4 @@ def _run_all() -> None:
 
 
 if __name__ == "__main__":
-    if len(sys.argv) > 1:  # the number of who started it, and without which it is not needed
-        end_with(int(sys.argv[1]))
     compile_all()

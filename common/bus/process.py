@@ -20,6 +20,7 @@ import psutil
 from common.bus.bus import Bus, Stopped
 from common.bus.control_messages import Pulse
 from common.bus.rate import Pace
+from common.platform.platforms import platform
 
 BEAT_S: Final = 1.0
 READY_S: Final = 60.0
@@ -28,6 +29,8 @@ PAGE_S: Final = 30.0
 """How long a clip waits for somebody to open the page, once all else is ready."""
 BEGIN_S: Final = READY_S + PAGE_S
 """How long a viewer that is ready waits for the run to begin."""
+HANG_UP: Final[signal.Signals | None] = getattr(signal, "SIGHUP", None)
+"""What a terminal that is closed sends; None where terminals send nothing."""
 SUPERVISING: Final = (
     ".".join([*__name__.split(".")[:-3], "runtime"]),
     "tritrack.__main__",
@@ -40,7 +43,7 @@ class ProcessContext(NamedTuple):
     """How a process was started, and where it leaves what it has to say."""
 
     supervised: bool = False
-    """Started by a supervisor, which alone hears Ctrl-C and ends it with SIGTERM."""
+    """Started by a supervisor, which alone hears Ctrl-C and asks it to end."""
     log: Path | None = None
     """The run's log; None: the terminal."""
     kept: Path | None = None
@@ -66,15 +69,13 @@ def process(name: str, context: ProcessContext) -> Iterator[threading.Event]:
     def end(_number: int, _frame: FrameType | None) -> None:
         stop.set()
 
-    before = signal.signal(signal.SIGTERM, end)
-    before_int = signal.signal(signal.SIGINT, signal.SIG_IGN if context.supervised else end)
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN if context.supervised else end)
     start_log(name, context.log)
     try:
-        with suppress(Stopped):
+        with platform().asked_to_end(stop.set), suppress(Stopped):
             yield stop
     finally:
-        signal.signal(signal.SIGTERM, before)
-        signal.signal(signal.SIGINT, before_int)
+        signal.signal(signal.SIGINT, before)
 
 
 def start_log(name: str, path: Path | None, level: int | str | None = None) -> None:

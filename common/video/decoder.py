@@ -1,18 +1,16 @@
-"""The child that decodes: `python -m common.video.decoder PIPE` answers one source a line."""
+"""The child that decodes: it answers one source a line."""
 
 import itertools
 import json
-import os
-import sys
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import IO, Any, Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import cv2
 import numpy as np
 
-from common.child.parent_death import end_with_pipe
+from common.platform.platform import Answers, Asker
 from common.video.complaints import INTERLACED, Complaints
 from common.video.decoding import (
     DAMAGED,
@@ -60,12 +58,11 @@ class OpenFilm(NamedTuple):
     grabs: Iterator[Grabbed]
 
 
-def main() -> None:
+def main(asker: Asker) -> None:
     """Answer until the asker is gone."""
-    end_with_pipe(sys.stdin.fileno())
     cv2.setNumThreads(1)
-    answers, complaints = os.fdopen(int(sys.argv[1]), "wb"), Complaints()
-    for line in sys.stdin:
+    answers, complaints = asker.answers, Complaints()
+    for line in asker.requests:
         try:
             serve(json.loads(line), answers, complaints)
         except Refused as refusal:
@@ -73,7 +70,7 @@ def main() -> None:
         answers.flush()
 
 
-def serve(request: dict[str, Any], answers: IO[bytes], complaints: Complaints) -> None:
+def serve(request: dict[str, Any], answers: Answers, complaints: Complaints) -> None:
     """Say what a source is, send its frames at each size given, else their times; then END.
 
     Raises:
@@ -103,7 +100,7 @@ def serve(request: dict[str, Any], answers: IO[bytes], complaints: Complaints) -
     say(answers, END, Grabbed(came, time.monotonic(), None), DAMAGED.pack(damaged))
 
 
-def say_times(source: Source, answers: IO[bytes]) -> None:
+def say_times(source: Source, answers: Answers) -> None:
     """Send when each packet of a file is to be shown, seconds; none of a camera or a picture."""
     if not isinstance(source, str) or cv2.haveImageReader(source):
         return
@@ -163,7 +160,7 @@ def grabs(capture: cv2.VideoCapture, every: int, start: int) -> Iterator[Grabbed
 
 
 def say(
-    answers: IO[bytes], kind: bytes, grab: Grabbed | None = None, *parts: bytes | memoryview
+    answers: Answers, kind: bytes, grab: Grabbed | None = None, *parts: bytes | memoryview
 ) -> None:
     """Send one answer; pictures at once, so that a live one does not wait."""
     index, grabbed_s = (grab.index, grab.grabbed_s) if grab else (0, 0.0)
@@ -173,7 +170,3 @@ def say(
         answers.write(part)
     if kind == FRAME:
         answers.flush()
-
-
-if __name__ == "__main__":
-    main()

@@ -15,7 +15,8 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from common.child.child_process import Broken, Child
+from common.platform.platform import Broken, Child
+from common.platform.platforms import platform
 from common.video.pictures import (
     ALL,
     Decoded,
@@ -162,7 +163,7 @@ class Decoder:
             if self._stopped:
                 raise DecoderDied(source, 0, "it was stopped")
             if self._child is None:
-                self._child = Child(f"{__package__}.decoder", self._stall_s)
+                self._child = platform().child(f"{__package__}.decoder", self._stall_s)
             return self._child
 
 

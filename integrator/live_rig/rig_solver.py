@@ -9,7 +9,8 @@ from typing import Final
 import msgspec
 
 from calibration.tracks.lateness import LEAST_LATE
-from common.child.child_process import Broken, Child
+from common.platform.platform import Broken, Child
+from common.platform.platforms import platform
 from integrator.live_rig.rig_job import LENGTH, Job, Solved, solved
 
 MODULE: Final = f"{__package__}.rig_child"
@@ -43,7 +44,7 @@ class RigSolver:
     def _do(self, job: Job) -> None:
         answer = Solved(refusal="the search for it ended without an answer")
         try:
-            with contextlib.closing(Child(MODULE, STALL_S)) as child:
+            with contextlib.closing(platform().child(MODULE, STALL_S)) as child:
                 self._child = child
                 child.ask(base64.b64encode(msgspec.msgpack.encode(job)))
                 answer = _answer(child)

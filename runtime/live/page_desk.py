@@ -4,6 +4,7 @@ import math
 import socket
 import threading
 from collections.abc import Callable
+from multiprocessing import Pipe
 from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any, Final
@@ -16,7 +17,7 @@ from common.bus.messages import Body, Posture
 from common.bus.process import ProcessContext
 from common.config.settings import Settings
 from common.npz_file import Facts
-from runtime.forking.zygote import SPAWN, Zygote
+from common.platform.platform import Launcher
 from runtime.live.process_table import Part, page_part
 from runtime.live.recorded import MessageLog, SoFar, WholeRun
 from runtime.live.supervise import Watched
@@ -45,11 +46,11 @@ class PageDesk:
         out: Path,
         title: str,
         context: ProcessContext,
-        zygote: Zygote | None = None,
+        launcher: Launcher | None = None,
     ) -> None:
         """Start the page's process at once: people shall not wait for what compiles.
 
-        One in its place is forked of the zygote, if there is one.
+        One in its place begins by the launcher, if there is one.
         """
         self.stopped = False
         """The run was ended at the page."""
@@ -65,8 +66,8 @@ class PageDesk:
         self._ending: Connection | None = None
         self._entrance = entrance_of(settings.page)
         if settings.page.port:
-            theirs, self._ending = SPAWN.Pipe(duplex=False)
-            part = page_part(settings, context, title, theirs, self._entrance, zygote)
+            theirs, self._ending = Pipe(duplex=False)
+            part = page_part(settings, context, title, theirs, self._entrance, launcher)
             self.watched = Watched(part)
 
     @property

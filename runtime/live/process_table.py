@@ -1,35 +1,20 @@
 """The processes of a live run: the table of them, how one is started, and how it is ended."""
 
-import os
-import signal
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, nullcontext, suppress
-from multiprocessing import resource_tracker
+from collections.abc import Callable
+from multiprocessing import Pipe
 from multiprocessing.connection import Connection
-from multiprocessing.context import ForkServerContext, SpawnContext
-from multiprocessing.process import BaseProcess
 from typing import Any, Final, NamedTuple
 
 from animator.page.door import Entrance
 from common.bus.process import ProcessContext
-from common.child.parent_death import end_with_parent
-from common.child.process_name import be_shown_as
 from common.config.settings import Settings
+from common.platform.platform import Job, Launcher, Worker
+from common.platform.platforms import platform
 from common.video.clip_facts import Clip
-from runtime.forking.reparenting import ReparentedProcess, adopted, adopting, be_adopted
-from runtime.forking.zygote import FORK, SPAWN, Zygote
 from runtime.live.thread_worker import ThreadWorker, confessed
 
 END_S: Final = 5.0
 """What most processes may take to close their doors."""
-OF_TERMINALS: Final = (signal.SIGINT, signal.SIGHUP)
-FRUGAL: Final = {
-    "OMP_NUM_THREADS": "1",
-    "OPENBLAS_NUM_THREADS": "1",
-    "NUMBA_NUM_THREADS": "1",
-    "MALLOC_ARENA_MAX": "1",
-}
-"""One thread a library, and one heap for all threads: glibc would make one for each of Zenoh's."""
 
 
 class Part(NamedTuple):
@@ -48,8 +33,8 @@ class Part(NamedTuple):
     """It starts processes of its own."""
     end_s: float = END_S
     """How long it may take to close its doors before it is killed."""
-    zygote: Zygote | None = None
-    """Of which it is forked, where that is warm."""
+    launcher: Launcher | None = None
+    """Where it begins soonest."""
     beside: bool = False
     """It is a thread of the supervisor's process."""
 
@@ -58,13 +43,17 @@ class Running(NamedTuple):
     """A part that was started."""
 
     part: Part
-    process: BaseProcess | ReparentedProcess | ThreadWorker
+    process: Worker
     words: Connection
     """On which it says why it fails."""
 
 
 def live_parts(
-    settings: Settings, clip: Clip, context: ProcessContext, zygote: Zygote, beside: bool = False
+    settings: Settings,
+    clip: Clip,
+    context: ProcessContext,
+    launcher: Launcher,
+    beside: bool = False,
 ) -> list[Part]:
     """The table of a live run: who listens comes before who speaks (P2).
 
@@ -72,7 +61,7 @@ def live_parts(
         settings: Of the run.
         clip: What is looked at.
         context: How its parts run.
-        zygote: Of which they are forked.
+        launcher: Where they begin soonest.
         beside: They are threads of this process instead.
     """
     period_s = clip.every / clip.views[0].fps
@@ -87,7 +76,7 @@ def live_parts(
         seen_by = (settings, view.number, context)
         name = f"viewer {view.number}"
         parts.append(Part(name, viewer_main, seen_by, leads=True, beats=True, nests=True))
-    return [part._replace(zygote=zygote, beside=beside) for part in parts]
+    return [part._replace(launcher=launcher, beside=beside) for part in parts]
 
 
 def names_of(clip: Clip) -> tuple[str, ...]:
@@ -101,11 +90,11 @@ def page_part(
     title: str,
     ending: Connection,
     entrance: Entrance,
-    zygote: Zygote | None = None,
+    launcher: Launcher | None = None,
 ) -> Part:
     """The process of the live page: started first, and the last to end."""
     arguments = (settings, context, title, ending, entrance)
-    return Part("animator", animator_main, arguments, zygote=zygote)
+    return Part("animator", animator_main, arguments, launcher=launcher)
 
 
 def integrator_main(*arguments: Any) -> None:
@@ -144,30 +133,13 @@ def viewer_main(*arguments: Any) -> None:
 
 
 def started(part: Part) -> Running:
-    """A part, begun: beside its supervisor, forked where there is a warm zygote, else a new
-    Python."""
+    """A part, begun: beside its supervisor, by its launcher, else as a new Python."""
     if part.beside:
-        ours, theirs = SPAWN.Pipe(duplex=False)
+        ours, theirs = Pipe(duplex=False)
         return Running(part, ThreadWorker(part.name, part.main, part.arguments, theirs), ours)
-    if part.zygote is not None and part.zygote.context is FORK:
-        with suppress(EOFError, OSError):  # the zygote dies at this moment
-            return _begun(part, FORK)
-    return _begun(part, SPAWN)
-
-
-def _begun(part: Part, context: ForkServerContext | SpawnContext) -> Running:
-    forked = context is FORK
-    ours, theirs = context.Pipe(duplex=False)
-    process = context.Process(
-        name=part.name,
-        target=_guarded,
-        args=(part.name, part.main, part.arguments, theirs, forked),
-        daemon=not part.nests,
-    )
-    with inherited(), adopting() if forked else nullcontext():
-        process.start()
-        theirs.close()
-        return Running(part, adopted(process, ours) if forked else process, ours)
+    begin = platform().start if part.launcher is None else part.launcher.start
+    arguments = (part.name, part.main, part.arguments)
+    return Running(part, *begin(Job(part.name, _guarded, arguments, part.nests)))
 
 
 def end(one: Running) -> bool:
@@ -193,40 +165,10 @@ def last_words(one: Running) -> str:
     return f"killed by signal {-code}" if code < 0 else f"ended with exit code {code}"
 
 
-@contextmanager
-def inherited() -> Iterator[None]:
-    """What a process takes over from its supervisor: one thread a library, one heap, deaf to its
-    terminal.
-
-    A terminal sends Ctrl-C, and word of its own end, to all processes; only the supervisor, who
-    ends the others in order, shall hear that, also while they are still importing.
-    """
-    before = dict(os.environ)
-    os.environ.update(FRUGAL)
-    heard = signal.pthread_sigmask(signal.SIG_BLOCK, OF_TERMINALS)
-    try:
-        resource_tracker.ensure_running()  # deaf as well; its start lifts the block of SIGINT
-        signal.pthread_sigmask(signal.SIG_BLOCK, OF_TERMINALS)
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, heard)  # the run of a site is deaf itself
-        os.environ.clear()
-        os.environ.update(before)
-
-
 def _guarded(
-    name: str,
-    main: Callable[..., None],
-    arguments: tuple[Any, ...],
-    words: Connection,
-    forked: bool,
+    name: str, main: Callable[..., None], arguments: tuple[Any, ...], words: Connection
 ) -> None:
     """Run a part; what it cannot do is said in one line, not in a traceback."""
-    if forked:
-        be_adopted(words)
-    be_shown_as(name)
-    end_with_parent()
-    signal.pthread_sigmask(signal.SIG_UNBLOCK, (signal.SIGTERM,))  # the zygote is deaf to it
     try:
         main(*arguments)
     except Exception as error:

@@ -15,15 +15,17 @@ from typing import Final, NamedTuple
 from rich.console import Console
 
 from common.bus.messages import Body, Posture
-from common.bus.process import ProcessContext, logged, settle, start_log
+from common.bus.process import HANG_UP, ProcessContext, logged, settle, start_log
 from common.config.settings import Settings
 from common.npz_file import Facts
+from common.platform.platform import Launcher
+from common.platform.platforms import platform
 from common.video.clip_facts import Clip
-from runtime.forking.zygote import Zygote
+from runtime import warming
 from runtime.live.admission import admitted, opened
 from runtime.live.launch import Heard, nothing_heard, run
 from runtime.live.page_desk import PageDesk
-from runtime.live.process_table import inherited, live_parts
+from runtime.live.process_table import live_parts
 from runtime.live.recorded import SoFar, WholeRun
 from runtime.live.run_facts import facts_of, note_lost, note_unseen
 from runtime.live.run_folder import KEPT, new_journal, new_log
@@ -33,6 +35,8 @@ from runtime.store.recording import Keep
 from runtime.store.runs import write_postures, write_run
 
 PLAYS: Final = "the run is over; the page plays it as long as it is open (Ctrl-C ends)"
+WARMED: Final = f"{warming.__name__}.warmed"
+"""What a run's launcher loads."""
 THREAD: Final = "%(threadName)s"
 """What the log calls a part that is a thread."""
 
@@ -74,8 +78,8 @@ def live(
     title = name or Path(settings.clip).name or "tritrack"
     with _stopped_by_signals(console) as stop, ExitStack() as doors:
         log = new_log(out)
-        zygote = Zygote(inherited)
-        desk = PageDesk(settings, out, title, ProcessContext(True, log), zygote)
+        launcher = platform().launcher(WARMED)
+        desk = PageDesk(settings, out, title, ProcessContext(True, log), launcher)
         doors.callback(desk.close)
         clip = _opened_or_nothing(settings, name, out, new=new)
         screen = Screen(clip, settings, console, lambda: desk.address)
@@ -88,7 +92,7 @@ def live(
         heard = heard._replace(journal=journal)
         try:
             _follow(
-                _Prepared(settings, clip, out, log, zygote, desk, screen, record, together),
+                _Prepared(settings, clip, out, log, launcher, desk, screen, record, together),
                 stop,
                 heard,
                 tell,
@@ -112,7 +116,7 @@ class _Prepared(NamedTuple):
     clip: Clip
     out: Path
     log: Path
-    zygote: Zygote
+    launcher: Launcher
     desk: PageDesk
     screen: Screen
     record: bool
@@ -123,11 +127,11 @@ def _follow(
     run_of: _Prepared, stop: threading.Event, heard: Heard, tell: Callable[[Heard], bool | None]
 ) -> None:
     """Run the processes until the clip ends or `stop` is set."""
-    settings, clip, out, log, zygote, desk, screen, record, together = run_of
+    settings, clip, out, log, launcher, desk, screen, record, together = run_of
     with ExitStack() as doors:
         kept = doors.enter_context(TemporaryDirectory(prefix=KEPT, dir=out))
         context = ProcessContext(True, log, Path(kept))
-        parts = live_parts(settings, clip, context, zygote, together)
+        parts = live_parts(settings, clip, context, launcher, together)
         show = doors.enter_context(screen.shown([part.name for part in (*parts, *desk.parts)]))
         doors.enter_context(logged("supervisor", log))
         if together:
@@ -141,7 +145,7 @@ def _follow(
 
         heard = heard._replace(keep=keep)
         settle()
-        zygote.wait(stop, lambda: look(heard))
+        launcher.wait(stop, lambda: look(heard))
         run(parts, settings, stop, look, heard, desk)
         note_unseen(heard)
         show(heard)
@@ -189,15 +193,16 @@ def _stopped_by_signals(console: Console) -> Iterator[threading.Event]:
     stop = threading.Event()
 
     def end(number: int, _frame: FrameType | None) -> None:
-        console.quiet |= number == signal.SIGHUP  # each word to a closed terminal would fail
+        console.quiet |= number == HANG_UP  # each word to a closed terminal would fail
         stop.set()
 
-    heeded = [signal.SIGINT, signal.SIGTERM]
-    if signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN:  # as under nohup
-        heeded.append(signal.SIGHUP)
+    heeded = [signal.SIGINT]
+    if HANG_UP and signal.getsignal(HANG_UP) is not signal.SIG_IGN:  # as under nohup
+        heeded.append(HANG_UP)
     before = {number: signal.signal(number, end) for number in heeded}
     try:
-        yield stop
+        with platform().asked_to_end(stop.set):
+            yield stop
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)

@@ -83,7 +83,8 @@ class Watched:
         if self.given_up or self.done:
             return ""
         if self._again_s is not None:
-            if now_s >= self._again_s and (self.part.zygote is None or self.part.zygote.ready()):
+            launcher = self.part.launcher
+            if now_s >= self._again_s and (launcher is None or launcher.ready()):
                 self._again_s, self.running = None, started(self.part)
                 self._alive_s = self._quiet_s = 0.0
             return ""

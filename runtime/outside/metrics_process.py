@@ -1,6 +1,5 @@
 """The metrics process: everything that is said, as figures and health for who asks by HTTP."""
 
-import os
 import threading
 import time
 from collections.abc import Iterable, Sequence
@@ -16,6 +15,7 @@ from common.bus.messages import Body, Posture
 from common.bus.process import BEAT_S, READY_S, Heart, ProcessContext, process
 from common.bus.rate import Pace
 from common.config.settings import Settings
+from common.platform.platforms import platform
 from runtime.outside.health import ailments
 from runtime.outside.metrics import families
 from runtime.outside.metrics_server import served
@@ -95,7 +95,7 @@ def main(
     """
     desk = Desk(needed, settings.room)
     with process("metrics", context) as stop:
-        os.nice(BEHIND)
+        platform().give_way(BEHIND)
         with (
             served(settings.metrics, desk.metrics, desk.health),
             open_client(settings.bus, settings.room, READY_S, "metrics", stop) as bus,

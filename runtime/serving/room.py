@@ -1,5 +1,6 @@
 """One site under supervision: its process, what it says, why it does not run."""
 
+from multiprocessing import Pipe
 from multiprocessing.connection import Connection
 from typing import Final
 
@@ -8,7 +9,7 @@ import msgspec
 from common.bus.control_messages import Pulse
 from common.bus.inbox import Alive
 from common.bus.message_codec import decode
-from runtime.forking.zygote import SPAWN, Zygote
+from common.platform.platform import Launcher
 from runtime.live.free_ports import with_free_endpoint
 from runtime.live.process_table import Part
 from runtime.live.supervise import PartFailed, Watched
@@ -27,16 +28,16 @@ SITE: Final = "site"
 class Room:
     """A site that was started."""
 
-    def __init__(self, site: Site, zygote: Zygote | None = None) -> None:
-        """Started now, of that zygote if it is warm; an endpoint left open is chosen."""
+    def __init__(self, site: Site, launcher: Launcher | None = None) -> None:
+        """Started now, by that launcher; an endpoint left open is chosen."""
         self.site = site
-        self._zygote = zygote
+        self._launcher = launcher
         self.figures = RunFigures()
         self.failure = ""
         """Why it does not run; "" while it does."""
         self._pulses: dict[str, Pulse] = {}
         self._again_s = 0.0
-        self._ours, self._theirs = SPAWN.Pipe(duplex=False)
+        self._ours, self._theirs = Pipe(duplex=False)
         self._watched = self._started()
 
     @property
@@ -87,7 +88,7 @@ class Room:
             beats=True,
             nests=True,
             end_s=END_S,
-            zygote=self._zygote,
+            launcher=self._launcher,
         )
         return Watched(part)
 

@@ -12,10 +12,10 @@ from typing import Final
 from rich.console import Console
 from rich.live import Live as LiveDisplay
 
+from common.bus.process import HANG_UP
 from common.config.part_settings import SettingsError
-from runtime.forking.zygote import Zygote
+from common.platform.platforms import platform
 from runtime.live.free_ports import refuse_held_metrics, refuse_held_ports, with_free_endpoint
-from runtime.live.process_table import inherited
 from runtime.live.table import table_of
 from runtime.serving.served_rooms import House
 from runtime.serving.sites import Sites, files_of, load_sites
@@ -23,7 +23,7 @@ from runtime.terminal import say, warn
 
 LOOK_S: Final = 0.1
 WARM_S: Final = 300.0
-"""So long rooms wait for the zygote at most: where all is compiled anew, that is done once."""
+"""So long rooms wait for the launcher at most: where all is compiled anew, that is done once."""
 CHANGED_S: Final = 1.0
 """How often is looked whether a file has changed."""
 
@@ -77,14 +77,14 @@ def serve(path: Path, console: Console) -> None:
     file = SitesWatch(path)
     metrics = file.sites.metrics
     _refuse_what_is_held(file.sites)
-    zygote = Zygote(inherited, f"{__package__}.warmed_sites")
+    launcher = platform().launcher(f"{__package__}.warmed_sites")
     with (
         _signals(console) as (stop, anew),
         LiveDisplay(console=console, transient=True) as display,
-        House(zygote, lambda told: say(console, told), lambda told: warn(console, told)) as house,
+        House(launcher, lambda told: say(console, told), lambda told: warn(console, told)) as house,
         _answers(file.sites, house),
     ):
-        zygote.wait(stop, lambda: None, WARM_S)
+        launcher.wait(stop, lambda: None, WARM_S)
         house.become({} if stop.is_set() else file.sites.sites)
         while not stop.wait(LOOK_S):
             house.look()
@@ -135,12 +135,13 @@ def _signals(console: Console) -> Iterator[tuple[threading.Event, threading.Even
     def heed(number: int, _frame: FrameType | None) -> None:
         closed = attended and not console.file.isatty()
         console.quiet |= closed  # each word to it would fail
-        (anew if number == signal.SIGHUP and not closed else stop).set()
+        (anew if number == HANG_UP and not closed else stop).set()
 
-    heeded = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+    heeded = (signal.SIGINT, HANG_UP) if HANG_UP else (signal.SIGINT,)
     before = {number: signal.signal(number, heed) for number in heeded}
     try:
-        yield stop, anew
+        with platform().asked_to_end(lambda: heed(signal.SIGTERM, None)):
+            yield stop, anew
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)

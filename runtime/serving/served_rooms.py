@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Self
 
 from common.bus.control_messages import Pulse
-from runtime.forking.zygote import Zygote
+from common.platform.platform import Launcher
 from runtime.serving.room import Room
 from runtime.serving.site_changes import changes
 from runtime.serving.sites import Site
@@ -15,10 +15,10 @@ class House:
     """The rooms that are served, by their names."""
 
     def __init__(
-        self, zygote: Zygote, say: Callable[[str], None], lament: Callable[[str], None]
+        self, launcher: Launcher, say: Callable[[str], None], lament: Callable[[str], None]
     ) -> None:
         """None yet; each piece of news is said, what went wrong is lamented."""
-        self._zygote = zygote
+        self._launcher = launcher
         self._rooms: dict[str, Room] = {}
         self._states: dict[str, str] = {}
         self._say, self._lament = say, lament
@@ -47,7 +47,7 @@ class House:
         stop, start = changes(wanted, {name: room.site for name, room in self._rooms.items()})
         self._end([self._rooms.pop(name) for name in stop])
         for site in start:
-            self._rooms[site.name] = Room(site, self._zygote)
+            self._rooms[site.name] = Room(site, self._launcher)
 
     def look(self) -> None:
         """See how each room is; what died is started again."""

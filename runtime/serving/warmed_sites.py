@@ -1,15 +1,15 @@
 """What sites are forked from: what a run's parts have, and what its supervisor and metrics have.
 
-Imported by the zygote of a service alone (`runtime/forking/zygote.py`).
+Imported where the launcher of a service loads what its sites need.
 """
 
 from contextlib import suppress
 from typing import Final
 
 from common.bus.process import settle
-from runtime.forking import warmed
 from runtime.offline import lockstep
 from runtime.serving import site_process
+from runtime.warming import warmed
 
 LOADED: Final = [warmed, lockstep, site_process]
 

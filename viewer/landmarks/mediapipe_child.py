@@ -1,18 +1,15 @@
-"""The child that looks by MediaPipe: `python -m viewer.landmarks.mediapipe_child PIPE ...`.
+"""The child that looks by MediaPipe.
 
 It shares the memory of one picture with the viewer, which writes a frame's number on a line when
 the picture of that frame is there. It answers each line with the points of the person in it.
 """
 
-import mmap
-import os
-import sys
-from typing import IO, TYPE_CHECKING
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from common.child.parent_death import end_with_pipe
+from common.platform.platform import Answers, Asker
 from viewer.landmarks.mediapipe_protocol import (
     NOBODY,
     POINTS,
@@ -28,21 +25,18 @@ FULL = 1
 """The full one of MediaPipe's three models: the only one that its wheel carries."""
 
 
-def main() -> None:
+def main(asker: Asker) -> None:
     """Answer until the asker is gone."""
-    end_with_pipe(sys.stdin.fileno())
-    pipe, memory, width, height = map(int, sys.argv[1:5])
-    shared = mmap.mmap(memory, 3 * width * height, access=mmap.ACCESS_READ)
-    picture = np.frombuffer(shared, np.uint8).reshape(height, width, 3)
-    answers = os.fdopen(pipe, "wb")
+    assert asker.picture is not None
+    answers = asker.answers
     try:
         pose = opened()
     except Exception as error:  # whatever keeps a foreign package from its work is for the user
         say(answers, encoded(REFUSED, text=f"{type(error).__name__}: {error}"))
         return
     say(answers, encoded(READY))
-    for line in sys.stdin:
-        points = looked(pose, picture)
+    for line in asker.requests:
+        points = looked(pose, asker.picture)
         kind = NOBODY if points is None else POINTS
         say(answers, encoded(kind, int(line), points))
 
@@ -68,11 +62,7 @@ def looked(pose: "Pose", picture: NDArray[np.uint8]) -> NDArray[np.float32] | No
     return np.array(points, np.float32)
 
 
-def say(answers: IO[bytes], answer: bytes) -> None:
+def say(answers: Answers, answer: bytes) -> None:
     """Send one answer at once."""
     answers.write(answer)
     answers.flush()
-
-
-if __name__ == "__main__":
-    main()

@@ -6,7 +6,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from common.child.child_process import Broken
+from common.platform.platform import Broken
 
 COUNT: Final = 33
 """Points of MediaPipe's body."""

@@ -1,20 +1,17 @@
 """MediaPipe as the source of a view's landmarks: a child process that looks at every frame."""
 
 import logging
-import mmap
-import os
 import time
 from importlib.util import find_spec
 from typing import Final, Self
 
-import numpy as np
-
 from common.bus.messages import Landmarks
-from common.child.child_process import Broken, Child
 from common.config.part_settings import SettingsError
 from common.config.picture_size import working_size
+from common.platform.platform import Broken, Child
+from common.platform.platforms import platform
 from common.video.clip_facts import View
-from common.video.pictures import Decoded, Image, Size
+from common.video.pictures import Decoded, Size
 from viewer.landmarks.mediapipe_joints import landmarks_of
 from viewer.landmarks.mediapipe_protocol import BYTES, POINTS, REFUSED, Answer, answer_of
 
@@ -62,15 +59,8 @@ class MediaPipe:
         self._size = working_size(view.upright_source, LOOKED_AT)
         self._asked_s: float | None = None
         """When the child was asked what it has not answered yet; None: it has answered all."""
-        width, height = self._size
-        memory = os.memfd_create("landmarks")
-        os.truncate(memory, 3 * width * height)
-        shared = mmap.mmap(memory, 3 * width * height)
-        self._picture: Image = np.frombuffer(shared, np.uint8).reshape(height, width, 3)
-        told = [str(number) for number in (memory, width, height)]
-        child = f"{__package__}.mediapipe_child"
-        self._child: Child | None = Child(child, START_S, told, (memory,))
-        os.close(memory)
+        module = f"{__package__}.mediapipe_child"
+        self._child: Child | None = platform().child(module, START_S, self._size)
 
     def __enter__(self) -> Self:
         """Already started."""
@@ -124,7 +114,8 @@ class MediaPipe:
         """What the child says of a frame; None when it does not say so in time."""
         if not self._is_free(child):
             return None
-        self._picture[:] = decoded.picture if decoded.large is None else decoded.large
+        assert child.picture is not None
+        child.picture[:] = decoded.picture if decoded.large is None else decoded.large
         child.ask(str(decoded.index).encode())
         self._asked_s = time.monotonic()
         return self._next(child, min(wait_s, self._stall_s))

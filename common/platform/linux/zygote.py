@@ -9,33 +9,23 @@ more: all rooms of a machine share what was loaded once.
 """
 
 import logging
-import multiprocessing
 import os
-import signal
 import sys
 import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
+from contextlib import contextmanager, nullcontext, suppress
 from importlib import import_module
 from multiprocessing import forkserver, util
-from multiprocessing.context import ForkServerContext, SpawnContext
 from typing import Any, Final
 
 from common.cache_folder import mark_of_all
-from common.child import parent_death
+from common.platform.linux.forked_child import FORK
+from common.platform.linux.part_process import begun, inherited
+from common.platform.platform import COMPILED_S, WARM_S, Job, Started
 
-SPAWN: Final = multiprocessing.get_context("spawn")
-FORK: Final = multiprocessing.get_context("forkserver")
-"""Never the plain fork: Zenoh's threads are not inherited."""
-WARMED: Final = f"{__package__}.warmed"
-BOUND: Final = f"{parent_death.__package__}.parent_bound"
+SERVING: Final = f"{__package__}.serving_forks"
 """Imported first: what is loaded takes seconds, in which this process may die."""
-WARM_S: Final = 20.0
-"""So long a run waits for its zygote at most."""
-COMPILED_S: Final = 600.0
-"""So long where all is compiled anew: parts that did so each for itself would take far longer, and
-compile in the midst of the run what they meet there first."""
 LOOK_S: Final = 0.05
 
 log = logging.getLogger(__name__)
@@ -44,39 +34,36 @@ log = logging.getLogger(__name__)
 class Zygote:
     """The zygote of this process: one for all its runs."""
 
-    def __init__(
-        self, inherited: Callable[[], AbstractContextManager[None]], loaded: str = WARMED
-    ) -> None:
+    def __init__(self, loaded: str) -> None:
         """Started now, in the main thread: Linux takes the end of that for this process's.
 
         Args:
-            inherited: Arranges what processes of a run take over from this one.
-            loaded: The module that it imports, `warmed` or one that imports that.
+            loaded: The module that it imports.
         """
-        self._warm = self._coming = False
-        self._inherited = inherited
-        if sys.platform != "linux":  # elsewhere libraries do not bear a fork
-            return
-        FORK.set_forkserver_preload([BOUND, loaded])
-        self._warm = forked_by() is not None
+        self._coming, self._loaded = False, loaded
+        FORK.set_forkserver_preload([SERVING, begun.__module__, loaded])
+        self.warm = is_forked()
+        """Whether a worker is forked, and not a new Python."""
         try:
-            with _forked() if self._warm else nullcontext():
+            with _forked() if self.warm else nullcontext():
                 self._begun()
         except OSError as error:  # as where the folder of temporary files has a long name
             log.info("no zygote, each part imports for itself: %s", error)
-            self._warm = False
+            self.warm = False
         else:
             self._expect()
 
-    @property
-    def context(self) -> ForkServerContext | SpawnContext:
-        """In which a process begins soonest."""
-        return FORK if self._warm else SPAWN
+    def start(self, job: Job) -> Started:
+        """Begin a worker: forked where this is warm, else a new Python."""
+        if self.warm:
+            with suppress(EOFError, OSError):  # the zygote dies at this moment
+                return begun(job, forked=True)
+        return begun(job, forked=False)
 
     def wait(self, stop: threading.Event, look: Callable[[], None], most_s: float = WARM_S) -> None:
         """Until it is warm, or that takes too long, or the run shall end; `look` meanwhile."""
         until_s = time.monotonic() + (most_s if mark_of_all().exists() else COMPILED_S)
-        while self._coming and not (self._warm or stop.wait(LOOK_S)):
+        while self._coming and not (self.warm or stop.wait(LOOK_S)):
             if time.monotonic() > until_s:
                 self._coming = False
                 break
@@ -88,41 +75,40 @@ class Zygote:
         A zygote that died is begun anew: who asks again and again need not stand still until it is
         warm, as who starts a process at once does.
         """
-        if self._warm and self._begun():
-            self._warm = False
+        if self.warm and self._begun():
+            self.warm = False
             self._expect()
-        return self._warm or not self._coming
+        return self.warm or not self._coming
 
     def _begun(self) -> bool:
         """See that it runs; whether it did not."""
         server: Any = forkserver._forkserver
         before = server._forkserver_pid
-        with self._inherited():
+        with inherited():
             os.environ.update(_same_modules())
             forkserver.ensure_running()
         return bool(server._forkserver_pid != before)
 
     def _expect(self) -> None:
         """Notice when it is warm."""
-        self._coming = not self._warm
-        if self._warm:
+        self._coming = not self.warm
+        if self.warm:
             return
         threading.Thread(target=self._await, name="zygote", daemon=True).start()
 
     def _await(self) -> None:
         """Its first fork is there as soon as it is warm, and says whether it is."""
-        first = FORK.Process(target=_tell, daemon=True)
+        first = FORK.Process(target=_tell, args=(self._loaded,), daemon=True)
         with suppress(EOFError, OSError):  # it died: who needs it does without
             first.start()
             first.join()
-            self._warm = first.exitcode == 0
-        self._coming = self._warm
+            self.warm = first.exitcode == 0
+        self._coming = self.warm
 
 
-def forked_by() -> int | None:
-    """The zygote that this process was forked of, by its number; None where it was not."""
-    warmed = sys.modules.get(WARMED)
-    return None if warmed is None else int(warmed.PID)
+def is_forked() -> bool:
+    """Whether this process was forked of a zygote."""
+    return SERVING in sys.modules
 
 
 @contextmanager
@@ -146,18 +132,12 @@ def _fork(passed: Sequence[int]) -> int:
     number = os.fork()
     if number:
         return number
-    try:
-        import_module(WARMED).begin(starter)
-        for heeded in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP):
-            signal.signal(heeded, signal.SIG_DFL)  # this process's own are not for its parts
-        listener, alive, *_ = passed
-        forkserver.main(listener, alive, [])
-    finally:
-        os._exit(1)
+    import_module(SERVING).serve(starter, passed)  # it does not return
+    raise AssertionError("a zygote went on as the process that it was forked of")
 
 
-def _tell() -> None:
-    raise SystemExit(0 if forked_by() else 1)
+def _tell(loaded: str) -> None:
+    raise SystemExit(0 if loaded in sys.modules else 1)
 
 
 def _same_modules() -> dict[str, str]:

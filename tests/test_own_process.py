@@ -1,4 +1,4 @@
-"""Nothing outlives who started it, however that died: real processes, killed."""
+"""A process has the name that a user looks for, and does not outlive its parent."""
 
 import ctypes
 import os
@@ -12,7 +12,7 @@ from pathlib import Path
 import psutil
 import pytest
 
-from common.child.parent_death import end_with_parent
+from common.platform.linux.own_process import end_with_parent
 from runtime.live.process_table import Part, end, started
 
 SOON_S = 2.0
@@ -23,7 +23,7 @@ PATIENCE_S = 20.0
 PARENT = """
 import sys, time
 from pathlib import Path
-from test_parent_death import sleeps
+from test_own_process import sleeps
 from runtime.live.process_table import Part, started
 if __name__ == "__main__":
     child = started(Part("viewer 1", sleeps, (sys.argv[1],)))
@@ -93,7 +93,7 @@ def test_a_process_that_nobody_started_so_is_left_alone() -> None:
 def test_a_child_that_works_ends_with_its_pipe() -> None:
     """It reads nothing at the moment, as a decoder that waits for a camera."""
     code = (
-        "import sys, time; from common.child.parent_death import end_with_pipe; "
+        "import sys, time; from common.platform.linux.own_process import end_with_pipe; "
         "end_with_pipe(sys.stdin.fileno()); print('up', flush=True); time.sleep(600)"
     )
     child = subprocess.Popen(
@@ -108,3 +108,15 @@ def test_a_child_that_works_ends_with_its_pipe() -> None:
         child.wait(0.3)
     child.stdin.close()
     child.wait(SOON_S)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the name is set on Linux alone")
+@pytest.mark.parametrize(("name", "shown"), [("viewer 1", "viewer 1"), ("s" * 20, "s" * 15)])
+def test_ps_shows_the_name(name: str, shown: str) -> None:
+    code = (
+        "import os, subprocess; from common.platform.linux.own_process import be_shown_as\n"
+        f"be_shown_as({name!r})\n"
+        "print(subprocess.check_output(['ps', '-o', 'comm=', '-p', str(os.getpid())], text=True))"
+    )
+    said = subprocess.check_output([sys.executable, "-c", code], text=True)
+    assert said.strip() == shown

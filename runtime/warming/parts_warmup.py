@@ -1,6 +1,9 @@
 """All that the parts of a run pass through before their first frames, compiled and loaded."""
 
-from contextlib import suppress
+import io
+from contextlib import redirect_stdout, suppress
+from importlib import import_module
+from multiprocessing.connection import Connection
 from typing import Final
 
 import cv2
@@ -15,8 +18,15 @@ from viewer import track
 from viewer.background.background import learn
 from viewer.viewer_warmup import warm_up as warm_viewer
 
+FIRST_RUN: Final = "tritrack.first_run"
 SIZE: Final = (160, 120)
 """Of the pictures that are made up; what is compiled does for any."""
+
+
+def compile_all(_words: Connection) -> None:
+    """Let all be compiled that commands run by default, in silence: the work of a worker."""
+    with redirect_stdout(io.StringIO()):
+        import_module(FIRST_RUN).compile_all()
 
 
 def warm_up() -> None:

@@ -1,32 +1,44 @@
-"""The end of a process whose parent has died: nothing of a run outlives who started it."""
+"""What a process arranges for itself: its name, its end with its parent, what it hears again."""
 
 import ctypes
 import multiprocessing
 import os
 import select
 import signal
-import sys
 import threading
 from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
 from typing import Final
 
 PR_SET_PDEATHSIG: Final = 1
 """prctl(2): the signal that Linux sends to a process when the thread that started it is gone."""
 ORPHANED: Final = 1
-"""Exit code of who ends so; nobody is left to read it."""
+"""Exit code of a process that ends so; no process is left to read it."""
+
+
+def be_shown_as(name: str) -> None:
+    """Give this process the name that `top` and `ps` show; of a longer one the first 15 letters."""
+    with suppress(OSError):
+        Path("/proc/self/comm").write_text(name)
+
+
+def hear_sigterm() -> None:
+    """Let SIGTERM in, which a zygote blocks for its forks until they can heed it."""
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, (signal.SIGTERM,))
 
 
 def end_with_parent() -> None:
     """End at once when the process that started this one by multiprocessing dies, however it does.
 
-    Linux kills it, also while it is stopped or holds the interpreter; elsewhere a thread sees the
-    end of a pipe. In a process that nobody started so nothing happens.
+    Linux kills it, also while it is stopped or holds the interpreter, when the thread that started
+    it ends; a thread of its own sees the end of the parent's pipe. In a process that was not
+    started so nothing happens.
     """
     parent = multiprocessing.parent_process()
     if parent is None:
         return
-    if sys.platform == "linux":
-        end_with(parent.pid or 0)
+    end_with(parent.pid or 0)
     _end_after(parent.join)
 
 

@@ -3,17 +3,21 @@
 import contextlib
 import fcntl
 import io
+import mmap
 import os
 import select
-import signal
 import subprocess
 import sys
 import time
-from collections.abc import Sequence
+from os import memfd_create
 from typing import Final
 
-from common.child.forked_child import ForkedChild, can_fork
+import numpy as np
 
+from common.platform.linux.forked_child import ForkedChild, can_fork
+from common.platform.platform import Broken, Picture, how_it_ended
+
+RUN: Final = f"{__package__}.run_child"
 PIPE_BYTES: Final = 1 << 20
 """How far a child may run ahead of its reader: 18 pictures of 160x120; as much as Linux grants."""
 
@@ -21,43 +25,39 @@ END_S: Final = 1.0
 """How long a child that closed its pipe may take to be gone."""
 
 
-class Broken(RuntimeError):
-    """The child died or was stuck, and is gone; the text says how."""
+class ChildProcess:
+    """A process that answers lines with bytes; see `Child`.
 
-
-class Child:
-    """A process that answers lines with bytes; it has nothing to save and is ended by a kill.
-
-    It gets the number of the pipe that it answers on as its argument, then `told`. What a terminal
-    says to all is not for it, also while it imports: Ctrl-C must not look like a broken film.
+    It gets the number of the pipe that it answers on as its argument, and that of the memory of a
+    picture. What a terminal says to all is not for it, also while it imports: Ctrl-C must not look
+    like a broken video.
     """
 
     def __init__(
-        self, module: str, stall_s: float, told: Sequence[str] = (), files: Sequence[int] = ()
+        self, module: str, stall_s: float, picture_size: tuple[int, int] | None = None
     ) -> None:
-        """Start it; when it gives nothing for `stall_s` it counts as stuck.
-
-        Args:
-            module: What it runs.
-            stall_s: How long `read_into` waits for it.
-            told: Further arguments.
-            files: Open files that it shares, by their numbers.
-        """
+        """Start it; see `Platform.child`."""
         self._stall_s = stall_s
+        self.picture: Picture | None = None
         # A pipe of its own: what libraries print from their import on must not mix with answers.
         read_end, write_end = os.pipe()
         heard, asked = os.pipe()
         self._requests = io.FileIO(asked, "w")
-        self._process = _begun(module, heard, write_end, told, files)
+        if picture_size is None:
+            self._process = _begun(module, heard, write_end)
+        else:
+            memory, self.picture = _shared(picture_size)
+            shape = (memory, *self.picture.shape[:2])
+            self._process = _executed(module, heard, write_end, shape)
+            os.close(memory)
         os.close(heard)
         os.close(write_end)
         os.set_blocking(read_end, False)
         self._answers = io.FileIO(read_end)
         self._poll = select.poll()
         self._poll.register(self._answers, select.POLLIN)
-        if hasattr(fcntl, "F_SETPIPE_SZ"):
-            with contextlib.suppress(OSError):
-                fcntl.fcntl(self._answers, fcntl.F_SETPIPE_SZ, PIPE_BYTES)
+        with contextlib.suppress(OSError):
+            fcntl.fcntl(self._answers, fcntl.F_SETPIPE_SZ, PIPE_BYTES)
 
     @property
     def pid(self) -> int:
@@ -106,6 +106,7 @@ class Child:
         self._process.wait()
         self._requests.close()
         self._answers.close()
+        self.picture = None
 
     def _last_words(self) -> str:
         try:
@@ -113,29 +114,36 @@ class Child:
         except subprocess.TimeoutExpired:
             self.kill()
             return "it closed its pipe"
-        return f"killed by {signal.Signals(-code).name}" if code < 0 else f"exit code {code}"
+        return how_it_ended(code)
 
 
-def _begun(
-    module: str, requests: int, answers: int, told: Sequence[str], files: Sequence[int]
-) -> ForkedChild | subprocess.Popen[bytes]:
+def _shared(size: tuple[int, int]) -> tuple[int, Picture]:
+    """Memory for a picture of (width, height): an open file's number, and the picture in it."""
+    width, height = size
+    memory = memfd_create("picture")
+    os.truncate(memory, 3 * width * height)
+    shared = mmap.mmap(memory, 3 * width * height)
+    return memory, np.frombuffer(shared, np.uint8).reshape(height, width, 3)
+
+
+def _begun(module: str, requests: int, answers: int) -> ForkedChild | subprocess.Popen[bytes]:
     """The module, forked where there is who forks it and still lives."""
-    if can_fork() and not files:
+    if can_fork():
         with contextlib.suppress(OSError, EOFError):
-            return ForkedChild(module, requests, answers, told)
-    return _executed(module, requests, answers, told, files)
+            return ForkedChild(module, requests, answers)
+    return _executed(module, requests, answers)
 
 
 def _executed(
-    module: str, requests: int, answers: int, told: Sequence[str], files: Sequence[int]
+    module: str, requests: int, answers: int, picture: tuple[int, ...] = ()
 ) -> subprocess.Popen[bytes]:
-    """The module in a new Python."""
+    """The module in a new Python, given the memory, height and width of a picture."""
     # -P: a stranger's numpy.py in the working directory is not ours to run.
     return subprocess.Popen(
-        [sys.executable, "-P", "-m", module, str(answers), *told],
+        [sys.executable, "-P", "-m", RUN, module, *map(str, (answers, *picture))],
         stdin=requests,
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
-        pass_fds=[answers, *files],
+        pass_fds=[answers, *picture[:1]],
         process_group=0,
     )

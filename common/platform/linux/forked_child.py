@@ -1,21 +1,18 @@
 """A child process that is forked of what this one was forked of: it begins loaded, and shares that.
 
-Where this process is a part of a run, its zygote (`runtime/forking/zygote.py`) is there to fork
-others too: a process with threads must not fork itself.
+Where this process is a part of a run, its zygote (`zygote.py`) is there to fork others too: a
+process with threads must not fork itself.
 """
 
 import multiprocessing
 import os
-import signal
 import subprocess
-import sys
-from collections.abc import Sequence
-from importlib import import_module
 from multiprocessing import forkserver
 from multiprocessing.connection import Connection
 from typing import Any, Final
 
-from common.child.process_name import be_shown_as
+from common.platform.linux.own_process import hear_sigterm
+from common.platform.linux.run_child import run
 
 FORK: Final = multiprocessing.get_context("forkserver")
 
@@ -23,17 +20,16 @@ FORK: Final = multiprocessing.get_context("forkserver")
 class ForkedChild:
     """A Python module run by a fork; to its starter what `subprocess.Popen` of it would be."""
 
-    def __init__(self, module: str, requests: int, answers: int, told: Sequence[str]) -> None:
+    def __init__(self, module: str, requests: int, answers: int) -> None:
         """Start it.
 
         Args:
-            module: Its `main` is run.
+            module: See `run_child.run`.
             requests: Open file that becomes its standard input.
-            answers: Open file whose number is its first argument.
-            told: Further arguments.
+            answers: Open file that it answers on.
         """
         files = Connection(os.dup(requests), writable=False), Connection(os.dup(answers))
-        self._process = FORK.Process(target=_run, args=(module, *files, tuple(told)), daemon=True)
+        self._process = FORK.Process(target=_run, args=(module, *files), daemon=True)
         self._process.start()
         for one in files:
             one.close()
@@ -69,13 +65,11 @@ def can_fork() -> bool:
     return True
 
 
-def _run(module: str, requests: Connection, answers: Connection, told: tuple[str, ...]) -> None:
+def _run(module: str, requests: Connection, answers: Connection) -> None:
     os.setpgrp()  # what is said to all of a run's group is not for it
-    be_shown_as(module.rpartition(".")[2])
-    signal.pthread_sigmask(signal.SIG_UNBLOCK, (signal.SIGTERM,))  # the zygote is deaf to it
+    hear_sigterm()
     silence = os.open(os.devnull, os.O_WRONLY)
     for said in (1, 2):
         os.dup2(silence, said)
-    sys.stdin = os.fdopen(os.dup(requests.fileno()))
-    sys.argv = [module, str(os.dup(answers.fileno())), *told]
-    import_module(module).main()
+    os.dup2(requests.fileno(), 0)
+    run(module, os.dup(answers.fileno()))

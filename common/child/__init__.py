@@ -1,1 +1,0 @@
-"""Child processes: begun, named, ended with the process that began them."""

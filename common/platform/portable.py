@@ -1,0 +1,57 @@
+"""The platform of Python's own public parts: spawned processes, pipes, shared memory."""
+
+import signal
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from types import FrameType
+from typing import Final
+
+import psutil
+
+from common.platform.platform import Child, Job, Launcher, Platform, Started
+from common.platform.portable_child import PortableChild
+from common.platform.portable_worker import EAR, PortableLauncher, spawned
+
+
+class PortablePlatform:
+    """See `Platform`.
+
+    Each process is spawned, so a program that starts one guards its own work by
+    `if __name__ == "__main__":`, as multiprocessing asks for.
+    """
+
+    def launcher(self, loaded: str) -> Launcher:
+        """Each worker imports for itself; what is not compiled yet is compiled before."""
+        return PortableLauncher(loaded)
+
+    def start(self, job: Job) -> Started:
+        """Begin a worker as a new Python."""
+        return spawned(job)
+
+    @contextmanager
+    def asked_to_end(self, end: Callable[[], None]) -> Iterator[None]:
+        """By the pipe of a worker; by SIGTERM too, where the system sends one."""
+
+        def heed(_number: int, _frame: FrameType | None) -> None:
+            end()
+
+        before = signal.signal(signal.SIGTERM, heed)
+        try:
+            with EAR.listening(end):
+                yield
+        finally:
+            signal.signal(signal.SIGTERM, before)
+
+    def child(
+        self, module: str, stall_s: float, picture_size: tuple[int, int] | None = None
+    ) -> Child:
+        """Begin a child."""
+        return PortableChild(module, stall_s, picture_size)
+
+    def give_way(self, niceness: int) -> None:
+        """By its nice value, or by a class where there are none."""
+        own = psutil.Process()
+        own.nice(own.nice() + niceness if psutil.POSIX else psutil.BELOW_NORMAL_PRIORITY_CLASS)
+
+
+PLATFORM: Final[Platform] = PortablePlatform()

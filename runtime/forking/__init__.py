@@ -1,1 +1,0 @@
-"""Processes that are forked of a warm one, and whose children they become."""
