@@ -11,6 +11,7 @@ import time
 from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
+from types import SimpleNamespace
 
 import cv2
 import numpy as np
@@ -215,6 +216,12 @@ def test_what_opencv_prints_does_not_mix_with_the_pictures(
         assert len(list(own.frames(written(tmp_path / "cam1.avi"), SIZE))) == FRAMES
 
 
+def babbles(monkeypatch: pytest.MonkeyPatch, answer: bytes) -> None:
+    """Let decoders have a child that answers so, whatever it is asked."""
+    platform = SimpleNamespace(child=partial(Babbler, answer))
+    monkeypatch.setattr("common.video.decoding.platform", lambda: platform)
+
+
 class Babbler:
     """A child that gives an answer of its own."""
 
@@ -239,7 +246,7 @@ class Babbler:
     ids=["words", "short picture", "endless"],
 )
 def test_what_is_no_answer_ends_the_child(answer: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("common.video.decoding.Child", partial(Babbler, answer))
+    babbles(monkeypatch, answer)
     own = Decoder()
     with pytest.raises(DecoderDied, match="sent what is no answer"):
         list(own.frames("cam1.avi", SIZE))
@@ -475,13 +482,23 @@ def test_a_camera_that_is_unplugged_is_not_over(monkeypatch: pytest.MonkeyPatch)
     answer = HEADER.pack(MAGIC, INFO, 0, 0.0, 2) + b"{}"
     answer += HEADER.pack(MAGIC, FRAME, 0, time.monotonic() + 0.2, len(picture)) + picture
     answer += HEADER.pack(MAGIC, END, 1, 0.0, DAMAGED.size) + DAMAGED.pack(0)
-    monkeypatch.setattr("common.video.decoding.Child", partial(Babbler, answer))
+    babbles(monkeypatch, answer)
     with Live(view_of(0, frames=0), 1, RoomClock(0.0)) as live:
         assert live.take(5.0) is not None
         with pytest.raises(CameraLost, match="camera 0 gives no more pictures after 1: see that"):
             live.take(5.0)
     with Live(view_of("cam1.avi"), 1, RoomClock(time.monotonic() + 0.2)) as live:
         assert len(all_of(live)) == 1
+
+
+def test_a_live_view_reads_by_the_decoder_that_is_there_already(tmp_path: Path) -> None:
+    view = view_of(written(tmp_path / "cam1.avi"))
+    with Decoder() as own:
+        own.start(view.source)
+        begun = own.pid
+        with Live(view, 1, RoomClock(time.monotonic() + 0.2), decoder=own) as live:
+            assert live.take(5.0) is not None
+            assert own.pid == begun is not None
 
 
 def test_a_live_view_can_be_left_at_any_moment(tmp_path: Path) -> None:

@@ -232,3 +232,15 @@ def test_a_source_is_named_with_its_cure() -> None:
         assert cure(name) == "save the picture anew, as PNG or JPEG"
     assert cure("a.mp4").startswith("convert it, for example to MJPEG (ffmpeg -i IN -c:v mjpeg")
     assert cure("a.mp4").endswith("or copy it again where it was cut off")
+
+
+def test_a_child_may_begin_before_its_first_source_which_it_then_reads(script: Scripted) -> None:
+    script.answers = [INFO_SAID + said(END, DAMAGED.pack(0), 1)]
+    own = Decoder()
+    own.start("a.avi")
+    assert (len(script.begun), own.pid, script.asked) == (1, 4711, [])
+    assert own.probe("a.avi").frames == 7
+    assert len(script.begun) == 1
+    own.stop()
+    with pytest.raises(DecoderDied, match="it was stopped"):
+        own.start("a.avi")

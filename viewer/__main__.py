@@ -181,7 +181,8 @@ def main(
         heart.beat("starting")
         prepared = _prepared(settings, viewer, context)
         view, state = prepared.view, prepared.state
-        with outside_sources(settings, (view,)) as sources:
+        with outside_sources(settings, (view,)) as sources, Decoder() as decoder:
+            decoder.start(view.source)
             warm_up(state, view.size)
             settle()
             bus.announce(name)
@@ -192,7 +193,9 @@ def main(
                     # started again: its clip goes on
                     prepared = prepared._replace(state=state._replace(landmarks=None))
                 with (
-                    Live(view, settings.every, room_clock, sources.get(viewer)) as live,
+                    Live(
+                        view, settings.every, room_clock, sources.get(viewer), decoder=decoder
+                    ) as live,
                     clock.followed(bus, live.set_offset),
                 ):
                     run(prepared, live, bus, stop)

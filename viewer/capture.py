@@ -74,10 +74,12 @@ class Live:
         room: RoomClock,
         source: OutsideSource | None = None,
         clock: Clock = time.monotonic,
+        decoder: Decoder | None = None,
     ) -> None:
         """Begin to decode at once; the first frame of a video comes at the room's start.
 
         The source is asked for the landmarks of every frame, and waited for until the next is due.
+        The decoder, a new one where none is given, ends with this.
         """
         self._view = view
         self._source = source
@@ -88,7 +90,7 @@ class Live:
         self._missed = 0
         self._first_index: int | None = None
         self._stop = threading.Event()
-        self._decoder = Decoder()
+        self._decoder = decoder or Decoder()
         self._waiting: Mailbox[CapturedFrame] = Mailbox(WAITING)
         self._failure: Exception | None = None
         self._thread = threading.Thread(target=self._run, daemon=True)

@@ -89,6 +89,14 @@ class Decoder:
         child = self._child
         return child.pid if child else None
 
+    def start(self, source: Source) -> None:
+        """Begin the child before a source is asked for: a new Python imports for seconds.
+
+        Raises:
+            DecoderDied: When this was stopped.
+        """
+        self._ready(source)
+
     def probe(self, source: Source) -> VideoInfo:
         """What a source is; its first picture is decoded for that.
 

@@ -11,14 +11,15 @@ import msgspec
 
 from common.platform.platform import Asker
 from common.platform.platforms import platform
-from integrator.live_rig.rig_job import LENGTH, Job, solved
 
 POLITE: Final = 5
 
 
 def main(asker: Asker) -> None:
     """Answer until the asker is gone."""
-    platform().give_way(POLITE)
+    platform().give_way(POLITE)  # also while it imports
+    from integrator.live_rig.rig_job import LENGTH, Job, solved
+
     for line in asker.requests:
         job = msgspec.msgpack.decode(base64.b64decode(line), type=Job)
         answer = msgspec.msgpack.encode(solved(job))
