@@ -280,7 +280,7 @@ def test_a_file_of_the_working_directory_is_not_taken_for_a_library(tmp_path: Pa
     (tmp_path / "numpy.py").write_text("raise SystemExit('a stranger')")
     code = (
         "import sys; sys.path = [path for path in sys.path if path]\n"
-        "import threading; from runtime.live.process_table import inherited\n"
+        "import threading\n"
         "from common.platform.linux.zygote import Zygote\n"
         "if __name__ == '__main__':\n"
         "    one = Zygote('runtime.warming.warmed'); one.wait(threading.Event(), lambda: None)\n"
