@@ -52,8 +52,8 @@ def track(source: str | Path, views: tuple[ViewerNumber, ...] | None = None) -> 
         15
 
     Args:
-        source: A clip folder (cam1.*, cam2.*), or a settings file (TOML).
-        views: The cameras to use.
+        source: A clip folder (cam1.*, cam2.* ...), or a settings file (TOML).
+        views: Numbers of the cameras to use; None: all.
 
     Numpy's products take one thread meanwhile: two would wait for each other at every frame.
 

@@ -4,6 +4,7 @@ import json
 from collections.abc import Sequence
 from pathlib import Path
 
+import msgspec
 import numpy as np
 import pytest
 
@@ -16,6 +17,7 @@ from common.video.pictures import Decoded
 from viewer.landmarks.keypoint_files import (
     MOST_BYTES,
     KeypointFiles,
+    _folder_of,
     _with_a_whole_head,
     numbered,
     people_of,
@@ -205,3 +207,10 @@ def test_a_hidden_ear_is_where_the_other_is_and_a_hidden_nose_between_the_ears(s
     found = _with_a_whole_head(seen.copy())
     assert found[nose].tolist() == pytest.approx([50.0, 75.0, 0.4])
     assert found[own].tolist() == [60.0, 80.0, 0.2]
+
+
+def test_keypoints_lie_by_the_cameras_name(tmp_path: Path) -> None:
+    (tmp_path / "door").mkdir()
+    (tmp_path / "door" / "hall_000.json").write_text("{}")
+    view = msgspec.structs.replace(view_of("hall.avi"), name="door")
+    assert _folder_of(tmp_path, view, alone=False) == tmp_path / "door"

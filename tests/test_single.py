@@ -159,7 +159,7 @@ def test_of_a_clip_of_two_cameras_is_said_which_one_is_followed(
 ) -> None:
     single_all([clip], tmp_path, Given(), SMALL, Console(stderr=True, width=999))
     told, *_ = capsys.readouterr().err.splitlines()
-    assert told == f"{clip}: camera 1 alone is followed; both: tritrack track {clip}"
+    assert told == f"{clip}: camera 1 alone is followed; all of them: tritrack track {clip}"
 
 
 def refusal(path: Path, out: Path, capsys: pytest.CaptureFixture[str]) -> str:

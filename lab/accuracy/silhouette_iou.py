@@ -47,17 +47,17 @@ def overlaps(settings: Settings, truth: Arrays, decoders: Decoders) -> dict[str,
     """
     clip = open_clip(settings, decoders.of[1])
     return {
-        f"cam{view.number}": _of_view(view, clip.every, settings, truth, decoders)
+        view.name: _of_view(view, clip.every, settings, truth, decoders)
         for view in clip.views
-        if {f"mask_cam{view.number}", "mask_shape"} <= set(truth)
+        if {f"mask_{view.name}", "mask_shape"} <= set(truth)
     }
 
 
 def _of_view(
     view: View, every: int, settings: Settings, truth: Arrays, decoders: Decoders
 ) -> Overlap:
-    packed, width = truth[f"mask_cam{view.number}"], int(truth["mask_shape"][1])
-    row_of = truth.get(f"frames_cam{view.number}", np.arange(len(packed)))
+    packed, width = truth[f"mask_{view.name}"], int(truth["mask_shape"][1])
+    row_of = truth.get(f"frames_{view.name}", np.arange(len(packed)))
     decoder = decoders.of[view.number]
     background = opening_of_view(view, settings.silhouette, decoder).background
     state = silhouette.init(background, settings.silhouette, METHODS[settings.mode])

@@ -135,7 +135,10 @@ def _refuse_the_same(path: Path, folder: Path, there: bool) -> None:
 def _tell_of_two(job: Job, console: Console) -> None:
     """Which of two cameras is followed."""
     if len(footage_of(job.settings)) > 1:
-        say(console, f"{job.path}: camera 1 alone is followed; both: tritrack track {job.path}")
+        say(
+            console,
+            f"{job.path}: camera 1 alone is followed; all of them: tritrack track {job.path}",
+        )
 
 
 def name_of(path: Path) -> str:

@@ -178,7 +178,7 @@ def _landmarks_of(person: Person) -> Landmarks:
 def _folder_of(folder: Path, view: View, alone: bool) -> Path:
     """Where the files of a view stand."""
     stem = Path(str(view.source)).stem
-    names = [f"cam{view.number}", f"{stem}_json", *([""] if alone else [])]
+    names = [view.name, f"{stem}_json", *([""] if alone else [])]
     for place in (folder / name for name in names):
         if any(place.glob("*.json")):
             return place
