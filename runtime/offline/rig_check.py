@@ -160,7 +160,7 @@ def clock_word(facts: Facts) -> str:
         return f"view 2 is {told['applied_s']:+.2f} s late: its times were set back by that"
     several = ", ".join(f"{late_s:+.2f}" for late_s in told["may_be_s"])
     return (
-        f"how late view 2 is, the motion does not tell, as a gait repeats itself ({several} s): "
+        f"how late view 2 is, the motion does not show, as a gait repeats itself ({several} s): "
         "its times were left as they are, and joints are hardly believed; say it by --offset "
         "SECONDS"
     )
