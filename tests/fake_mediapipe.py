@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from common.video.clip_facts import View
+from common.video.clip_facts import ClipView
 from common.video.pictures import Decoded, Image, Size
 
 POSE = """
@@ -45,9 +45,9 @@ def install_fake(
     monkeypatch.delitem(sys.modules, "mediapipe", raising=False)
 
 
-def view_of(source: Size = (64, 48), working: Size = (64, 48)) -> View:
+def view_of(source: Size = (64, 48), working: Size = (64, 48)) -> ClipView:
     """A view of a film of pictures of a size, looked at in another."""
-    return View(1, "cam1.avi", source, working, 15.0, 40)
+    return ClipView(1, "cam1.avi", source, working, 15.0, 40)
 
 
 def shaded(index: int, shade: int, size: Size = (64, 48)) -> Decoded:

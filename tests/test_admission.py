@@ -11,7 +11,7 @@ from typed import instead
 from common.config.part_settings import BusSettings, CameraSettings
 from common.config.settings import Settings
 from common.rig.camera import paper_rig
-from common.video.clip_facts import Clip, Meta, View
+from common.video.clip_facts import Clip, ClipView, Meta
 from runtime.live import admission
 from runtime.live.admission import LiveRefused, admitted, opened, refuse_a_third_camera
 
@@ -49,7 +49,7 @@ def test_a_clip_gets_a_camera_for_each_viewer_and_the_lengths_that_are_known(
     monkeypatch: pytest.MonkeyPatch, posture_id: int, meant: str
 ) -> None:
     """A clip of free motion is of no posture that a model would have to know."""
-    view = View(2, 1, (160, 120), (160, 120), 15.0, 0)
+    view = ClipView(2, 1, (160, 120), (160, 120), 15.0, 0)
     rig = msgspec.structs.replace(RIG, cameras=RIG.cameras[1:])
     meta = msgspec.structs.replace(Meta(), posture="squat", posture_id=posture_id)
     instead(monkeypatch, "common.video.clips.open_clip", Clip("own", (view,), 1, rig, meta))

@@ -14,7 +14,7 @@ from common.body.body import JOINT_NAMES
 from common.bus.messages import Landmarks
 from common.config.part_settings import CameraSettings, SilhouetteSettings
 from common.config.settings import Settings
-from common.video.clip_facts import View
+from common.video.clip_facts import ClipView
 from common.video.clip_sources import ClipError
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
@@ -44,7 +44,7 @@ def decoder() -> Iterator[Decoder]:
         yield one
 
 
-def view_of(folder: Path, decoder: Decoder, camera: CameraSettings | None = None) -> View:
+def view_of(folder: Path, decoder: Decoder, camera: CameraSettings | None = None) -> ClipView:
     settings = Settings(clip=str(folder), cameras={"cam1": camera or CameraSettings()})
     return open_clip(settings, decoder, (1,)).views[0]
 
@@ -157,7 +157,7 @@ def test_a_plate_goes_before_what_a_camera_shows(
 def test_a_viewer_that_is_started_again_knows_its_cameras_room(clip: Path, tmp_path: Path) -> None:
     """Somebody stands before the camera by then; a run after that learns its room anew."""
     film = film_of(clip / "cam1.avi")
-    view = View(1, 0, (160, 120), (160, 120), 15.0, 0)
+    view = ClipView(1, 0, (160, 120), (160, 120), 15.0, 0)
     first, again, other = tmp_path / "first", FakeCamera(film[40:48]), tmp_path / "other"
     first.mkdir()
     other.mkdir()
@@ -175,7 +175,7 @@ def test_a_viewer_that_is_started_again_knows_its_cameras_room(clip: Path, tmp_p
 
 def test_a_camera_that_comes_back_with_another_picture_is_refused(tmp_path: Path) -> None:
     """Joints would be told by a rig of other pictures, and its room would not fit either."""
-    began = View(1, 0, (320, 240), (160, 120), 15.0, 0)
+    began = ClipView(1, 0, (320, 240), (160, 120), 15.0, 0)
     again = msgspec.structs.replace(began, source_size=(320, 180), size=(160, 90))
     opening_of_run(began, SilhouetteSettings(), FakeCamera(blank(160, 120)), tmp_path)
     with pytest.raises(ClipError, match=r"camera 0 gives.*160x90.*160x120 then\): start the run"):
@@ -186,7 +186,7 @@ def blank(width: int, height: int) -> Film:
     return [np.full((height, width, 3), 90, np.uint8)]
 
 
-FILM_VIEW = View(1, "film.avi", (8, 6), (8, 6), 10.0, 400)
+FILM_VIEW = ClipView(1, "film.avi", (8, 6), (8, 6), 10.0, 400)
 
 
 def numbered(n: int) -> np.ndarray:

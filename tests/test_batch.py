@@ -15,7 +15,7 @@ from staging import RIG, report
 from common.body.proportions import thesis_bdp
 from common.bus.messages import Body, Report, ViewerNumber
 from common.config.settings import Settings
-from common.video.clip_facts import Clip, Meta, View
+from common.video.clip_facts import Clip, ClipView, Meta
 from common.video.pictures import Undecodable
 from integrator.frame_numbers import FrameTimes
 from runtime.offline import batch
@@ -106,7 +106,7 @@ class Tracker:
 
 
 MEASURED = thesis_bdp(1.62)
-CLIP = Clip("walk", (View(1, "cam1.avi", (64, 48), (32, 24), 15.0, 2),), 3, None, Meta())
+CLIP = Clip("walk", (ClipView(1, "cam1.avi", (64, 48), (32, 24), 15.0, 2),), 3, None, Meta())
 
 
 def empty_body(frame: int) -> Body:

@@ -19,7 +19,7 @@ import psutil
 import pytest
 
 from common.bus.messages import Landmarks
-from common.video.clip_facts import View
+from common.video.clip_facts import ClipView
 from common.video.decoding import DAMAGED, END, FRAME, HEADER, INFO, MAGIC, STALL_S, Decoder
 from common.video.pictures import CameraLost, Decoded, DecoderDied, Image, Undecodable, Wanted
 from viewer.capture import WAITING, Live, RoomClock, recorded
@@ -48,8 +48,8 @@ def written(path: Path, frames: int = FRAMES, size: tuple[int, int] = SIZE, fps:
     return str(path)
 
 
-def view_of(source: str | int, fps: float = 15.0, frames: int = FRAMES) -> View:
-    return View(1, source, SIZE, SIZE, fps, frames)
+def view_of(source: str | int, fps: float = 15.0, frames: int = FRAMES) -> ClipView:
+    return ClipView(1, source, SIZE, SIZE, fps, frames)
 
 
 def shown(picture: Image) -> int:
@@ -513,7 +513,7 @@ def test_a_view_whose_decoder_is_stuck_can_be_left(tmp_path: Path) -> None:
     large = (640, 480)
     video = written(tmp_path / "cam1.avi", frames=200, size=large)
     began_s = time.monotonic()
-    with Live(View(1, video, large, large, 100.0, 200), 1, RoomClock(began_s)) as live:
+    with Live(ClipView(1, video, large, large, 100.0, 200), 1, RoomClock(began_s)) as live:
         assert live.take(5.0) is not None
         child = max(psutil.Process().children(), key=psutil.Process.create_time)
         child.suspend()

@@ -7,8 +7,8 @@ from common.rig.camera import paper_rig
 from common.rig.upright import Upright
 from common.video.clip_facts import (
     Clip,
+    ClipView,
     Meta,
-    View,
     camera_names,
     clip_summary,
     set_back,
@@ -22,12 +22,12 @@ from common.video.pictures import Ending
 
 LYING = Upright(width=160, height=90, quarters=1, square_width=200, square_height=108)
 """Pixels of 160x90 are made square, 200x108, and then turned to stand."""
-FIRST = View(1, "a.avi", (1920, 1080), (160, 120), 10.0, 50)
+FIRST = ClipView(1, "a.avi", (1920, 1080), (160, 120), 10.0, 50)
 SECOND = msgspec.structs.replace(FIRST, number=2, source="b.avi", late_s=0.25)
 RIG = paper_rig((160, 120), (200.0, 210.0), (4.0, 4.5))
 
 
-def clip_of(*views: View, rig_of: tuple[int, ...] = ()) -> Clip:
+def clip_of(*views: ClipView, rig_of: tuple[int, ...] = ()) -> Clip:
     cameras = tuple(RIG.cameras[n - 1] for n in rig_of)
     rig = msgspec.structs.replace(RIG, cameras=cameras) if cameras else None
     return Clip("walk", views, 1, rig, Meta())
@@ -113,14 +113,14 @@ def test_a_viewer_that_is_not_there_gets_the_others_camera() -> None:
 
 def test_a_clip_has_a_camera_for_each_number_up_to_its_last() -> None:
     """By hand: cameras 1 and 3 of a rig; the second, which is not looked at, gets the first's."""
-    third = View(3, "c.avi", (1920, 1080), (160, 120), 10.0, 50, name="door", upright=LYING)
+    third = ClipView(3, "c.avi", (1920, 1080), (160, 120), 10.0, 50, name="door", upright=LYING)
     clip = clip_of(FIRST, third, rig_of=(1, 2))
     rig = whole_rig(clip)
     assert rig is not None
     assert rig.cameras == (RIG.cameras[0], RIG.cameras[0], RIG.cameras[1])
     assert camera_names(clip) == ("cam1", "cam2", "door")
     assert uprights_of(clip) == (None, None, LYING)
-    assert camera_names(clip_of(View(2, 0, (8, 6), (8, 6), 15.0, 0))) == ("cam1", "cam2")
+    assert camera_names(clip_of(ClipView(2, 0, (8, 6), (8, 6), 15.0, 0))) == ("cam1", "cam2")
 
 
 def test_a_summary_tells_the_clip_and_its_cameras() -> None:

@@ -15,7 +15,7 @@ import pytest
 from common.config.part_settings import CameraSettings, SilhouetteSettings
 from common.config.settings import Settings
 from common.rig.camera import paper_rig, project
-from common.video.clip_facts import Act, Clip, Meta, View, shortfall
+from common.video.clip_facts import Act, Clip, ClipView, Meta, shortfall
 from common.video.clip_sources import ClipError
 from common.video.clips import find_calibration, meta_of, open_clip, probed
 from common.video.decoding import Decoder
@@ -300,7 +300,7 @@ def test_capture_times_place_the_frames_and_the_rate_carries_on_behind_them(
 
 
 def test_without_capture_times_the_rate_places_the_frames() -> None:
-    view = View(1, "cam1.avi", SIZE, SIZE, 25.0, 100)
+    view = ClipView(1, "cam1.avi", SIZE, SIZE, 25.0, 100)
     assert [view.captured_s(index) for index in (0, 1, 50)] == [0.0, 0.04, 2.0]
 
 
@@ -360,7 +360,7 @@ def test_the_offset_of_the_settings_sets_camera_2_back(folder: Path, decoder: De
 
 @pytest.mark.parametrize(("hz", "frames"), [(10.0, 5), (15.0, 8), (25.0, 13), (30.0, 15)])
 def test_half_a_second_has_as_many_frames_as_the_rate_says(hz: float, frames: int) -> None:
-    view = View(1, "cam1.avi", (160, 120), (160, 120), hz, 100)
+    view = ClipView(1, "cam1.avi", (160, 120), (160, 120), hz, 100)
     assert view.frames_in(SilhouetteSettings().empty_s) == frames
     assert view.frames_in(SilhouetteSettings(empty_frames=6).empty_s) == round(6 / 15 * hz)
     uneven = msgspec.structs.replace(view, capture_s=(0.0, 0.2, 0.4, 0.6))
@@ -490,7 +490,7 @@ def test_a_calibration_for_another_shape_or_too_few_cameras_is_refused(
 
 
 def test_a_video_that_ended_early_is_told() -> None:
-    view = View(1, "cam1.avi", SIZE, SIZE, 15.0, 69)
+    view = ClipView(1, "cam1.avi", SIZE, SIZE, 15.0, 69)
     assert shortfall(view, Ending(69)) == ""
     assert shortfall(view, Ending(40, damaged=1)) == (
         "cam1.avi was cut off or is damaged: 40 of 69 frames could be read; copy or record it again"

@@ -17,7 +17,7 @@ from common.bus.control_messages import Pulse
 from common.config.part_settings import CameraSettings
 from common.config.settings import Settings
 from common.method import DEFAULT
-from common.video.clip_facts import View, shortfall, unread_facts
+from common.video.clip_facts import ClipView, shortfall, unread_facts
 from common.video.clip_sources import ClipError
 from common.video.clips import open_clip
 from common.video.complaints import MOST_BYTES, Complaints
@@ -63,7 +63,7 @@ def written(path: Path, code: str, size: tuple[int, int] = SIZE, fps: float = HZ
     return path
 
 
-def read(path: Path, decoder: Decoder) -> tuple[View, list[Image]]:
+def read(path: Path, decoder: Decoder) -> tuple[ClipView, list[Image]]:
     """A file as a run opens it, and its pictures."""
     settings = Settings(cameras={"cam1": CameraSettings(source=str(path))})
     view = open_clip(settings, decoder).views[0]
@@ -174,7 +174,7 @@ class Over:
 
 def test_a_live_run_is_told_how_much_of_a_view_was_read() -> None:
     """The last pulse carries it into the summary."""
-    view = View(2, "cam2.mp4", SIZE, SIZE, float(HZ), 228)
+    view = ClipView(2, "cam2.mp4", SIZE, SIZE, float(HZ), 228)
     state = track.init(track.Setup(2, None, Settings(), DEFAULT), learn([picture_of(0)]))
     bus = LocalBus()
     pulses = bus.subscribe(Pulse)

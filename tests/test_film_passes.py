@@ -23,7 +23,7 @@ from common.method import METHODS, Method, Mode
 from common.notes.notes import Note, Notes
 from common.raster.silhouette_report import silhouette_report
 from common.rig.camera import Camera, Rig
-from common.video.clip_facts import Clip, Meta, View
+from common.video.clip_facts import Clip, ClipView, Meta
 from common.video.clip_sources import ClipError
 from runtime.offline import film_passes
 from runtime.offline.film_passes import (
@@ -133,7 +133,7 @@ def test_a_film_of_any_length_is_not_held_in_memory(silhouettes: list[Report]) -
     assert max(passed.kept) <= max(let_go.kept)
 
 
-CLIP = Clip("film", (View(2, "a.mp4", SIZE, SIZE, 15.0, 10),), 1, None, Meta())
+CLIP = Clip("film", (ClipView(2, "a.mp4", SIZE, SIZE, 15.0, 10),), 1, None, Meta())
 THESIS = METHODS["thesis"]
 
 

@@ -17,7 +17,7 @@ from common.config.settings import Settings
 from common.method import METHODS
 from common.notes.notes import Note, Notes
 from common.rig.camera import PAPER_ROTATIONS
-from common.video.clip_facts import Clip, Meta, View
+from common.video.clip_facts import Clip, ClipView, Meta
 from common.video.pictures import Ending
 from runtime.offline import film_tracking
 from runtime.offline.film_passes import (
@@ -43,7 +43,7 @@ from runtime.store.runs import NOBODY_SEEN
 from runtime.unfinished.work import Course
 from viewer.room.background_source import FilmBackground
 
-VIEW = View(2, "a.mp4", (640, 480), (160, 120), 30.0, 60)
+VIEW = ClipView(2, "a.mp4", (640, 480), (160, 120), 30.0, 60)
 CLIP = Clip("film", (VIEW,), 3, None, Meta("anna", "squat"), ("it is short",))
 UNCERTAIN = np.array([[True, False, False], [False, False, False]])
 ROOM: Any = SimpleNamespace(uncertain=UNCERTAIN)
@@ -109,7 +109,7 @@ class Passes:
         return Lifted(self.bodies, self.camera)
 
     @contextmanager
-    def outside_sources(self, _: Settings, views: tuple[View, ...]) -> Iterator[Any]:
+    def outside_sources(self, _: Settings, views: tuple[ClipView, ...]) -> Iterator[Any]:
         assert views == (VIEW,)
         yield self.sources
 

@@ -12,7 +12,7 @@ from spoiling import write_film, write_uneven
 
 from common.config.part_settings import CameraSettings
 from common.config.settings import Settings
-from common.video.clip_facts import View, shortfall
+from common.video.clip_facts import ClipView, shortfall
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
 from common.video.frame_times import timed
@@ -62,7 +62,7 @@ def uneven(path: Path) -> str:
     return str(path)
 
 
-def view_of(source: str, decoder: Decoder, fps: float = 0.0) -> View:
+def view_of(source: str, decoder: Decoder, fps: float = 0.0) -> ClipView:
     return open_clip(
         Settings(cameras={"cam1": CameraSettings(source=source)}, fps=fps), decoder
     ).views[0]

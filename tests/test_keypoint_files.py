@@ -12,7 +12,7 @@ from common.body.body import JOINT_NAMES
 from common.body.extremities import EXTREMITY_NAMES
 from common.bus.messages import Landmarks
 from common.config.part_settings import SettingsError
-from common.video.clip_facts import View
+from common.video.clip_facts import ClipView
 from common.video.pictures import Decoded
 from viewer.landmarks.keypoint_files import (
     MOST_BYTES,
@@ -38,8 +38,8 @@ def written(path: Path, *people: object) -> Path:
     return path
 
 
-def view_of(source: str | int = "walk.avi", frames: int = 3) -> View:
-    return View(1, source, (320, 240), (160, 120), 15.0, frames)
+def view_of(source: str | int = "walk.avi", frames: int = 3) -> ClipView:
+    return ClipView(1, source, (320, 240), (160, 120), 15.0, frames)
 
 
 def told(source: KeypointFiles, index: int) -> tuple[Landmarks, ...]:

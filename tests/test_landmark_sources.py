@@ -15,7 +15,7 @@ from common.bus.messages import Report
 from common.config.part_settings import SettingsError
 from common.config.settings import Settings
 from common.method import DEFAULT
-from common.video.clip_facts import View
+from common.video.clip_facts import ClipView
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
 from runtime.offline.frame_pairs import instants
@@ -42,7 +42,7 @@ def keypoints(folder: Path, frames: int) -> Path:
     return folder
 
 
-def views_of(settings: Settings) -> tuple[View, ...]:
+def views_of(settings: Settings) -> tuple[ClipView, ...]:
     return open_clip(settings).views
 
 

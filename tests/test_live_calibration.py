@@ -17,7 +17,7 @@ from common.config.settings import Settings
 from common.method import METHODS
 from common.rig.camera import Rig
 from common.rig.upright import Shift
-from common.video.clip_facts import Clip, Meta, View
+from common.video.clip_facts import Clip, ClipView, Meta
 from integrator import merge, merge_state
 from integrator.live_rig import live_calibration
 from integrator.live_rig.live_calibration import LiveCalibration, is_by_person
@@ -113,7 +113,7 @@ def test_a_run_whose_person_told_no_rig_says_at_its_end_why(
 def test_only_two_views_with_landmarks_and_no_calibration_are_calibrated_by_the_person(
     rig: Rig | None, views: int, settings: Settings, looks: bool
 ) -> None:
-    view = View(1, "cam1.avi", (320, 240), (160, 120), 15.0, 10)
+    view = ClipView(1, "cam1.avi", (320, 240), (160, 120), 15.0, 10)
     assert is_by_person(Clip("walk", (view,) * views, 1, rig, Meta()), settings) == looks
 
 

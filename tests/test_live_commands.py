@@ -9,7 +9,7 @@ from typed import Called, instead, typed
 
 from common.config.part_settings import CameraSettings, PageSettings, SettingsError
 from common.config.settings import Settings
-from common.video.clip_facts import Clip, Meta, View
+from common.video.clip_facts import Clip, ClipView, Meta
 from common.video.clip_sources import ClipError
 from runtime.live.admission import LiveRefused
 from runtime.store.other_run import OtherRun, run_of
@@ -29,7 +29,7 @@ from tritrack.commands.live_commands import (
 )
 
 CAMERAS = Settings(cameras={"cam1": CameraSettings(device=0), "cam2": CameraSettings(device=1)})
-VIEWS = tuple(View(n, n, (160, 120), (160, 120), 30.0, 0) for n in (1, 2))
+VIEWS = tuple(ClipView(n, n, (160, 120), (160, 120), 30.0, 0) for n in (1, 2))
 CLIP = Clip("room", VIEWS, 2, None, Meta())
 
 

@@ -20,7 +20,7 @@ from common.bus.messages import Body
 from common.config.part_settings import SettingsError
 from common.config.settings import Settings
 from common.method import METHODS
-from common.video.clip_facts import Act, Clip, Meta, View
+from common.video.clip_facts import Act, Clip, ClipView, Meta
 from common.video.clip_sources import ClipError
 from common.video.pictures import Ending
 from integrator import diagnostics, merge_state
@@ -195,8 +195,8 @@ def test_an_offset_that_is_given_is_used_and_not_looked_for(squats: Path, tmp_pa
 
 
 VIEWS = (
-    View(1, "a.avi", (320, 240), (160, 120), 15.0, 60),
-    View(2, "b.avi", (320, 240), (160, 120), 15.0, 50, late_s=0.125),
+    ClipView(1, "a.avi", (320, 240), (160, 120), 15.0, 60),
+    ClipView(2, "b.avi", (320, 240), (160, 120), 15.0, 50, late_s=0.125),
 )
 PAIR = Clip("pair", VIEWS, 1, None, Meta("anna", "squat", acts=(Act("kick", 3, 9),)), ("short",))
 
@@ -446,7 +446,7 @@ def test_two_of_three_cameras_give_what_a_clip_of_these_two_gives(
 def test_three_cameras_are_for_the_default_mode_and_a_calibration(
     mode: Any, calibrated: bool, said: str
 ) -> None:
-    third = View(3, "c.avi", (320, 240), (160, 120), 15.0, 60)
+    third = ClipView(3, "c.avi", (320, 240), (160, 120), 15.0, 60)
     rig = msgspec.structs.replace(RIG, cameras=(*RIG.cameras, RIG.cameras[0]))
     clip = Clip("three", (*VIEWS, third), 1, rig if calibrated else None, Meta())
     if said:

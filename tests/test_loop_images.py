@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from common.video.clip_facts import View
+from common.video.clip_facts import ClipView
 from common.video.pictures import Image
 from runtime.steps.loop_images import picture_of
 
@@ -11,7 +11,7 @@ def test_an_image_may_lie_in_memory_in_any_way_and_is_not_written() -> None:
     """Compiled passes see the same kind of array always: they are not compiled anew."""
     image, view = (
         np.random.default_rng(1).integers(0, 256, (120, 160, 3), np.uint8),
-        View(1, "", (160, 120), (160, 120), 15.0, 0),
+        ClipView(1, "", (160, 120), (160, 120), 15.0, 0),
     )
     ways: list[Image] = [
         image.copy(),

@@ -15,7 +15,7 @@ from common.bus.instant import Instant
 from common.bus.messages import Body, Guide, Report, ViewerNumber
 from common.config.settings import Settings
 from common.method import DEFAULT, Mode
-from common.video.clip_facts import Clip, Meta, View
+from common.video.clip_facts import Clip, ClipView, Meta
 from integrator import merge_state
 from runtime.offline import performance
 from runtime.offline.lockstep import Decoders, track_clip
@@ -129,7 +129,7 @@ class Noted:
 
 def prepared() -> Prepared:
     """A clip of four instants; a viewer's state says whose it is and counts what that saw."""
-    views = tuple(View(n, f"cam{n}.avi", (160, 120), (160, 120), 15.0, FRAMES) for n in VIEWS)
+    views = tuple(ClipView(n, f"cam{n}.avi", (160, 120), (160, 120), 15.0, FRAMES) for n in VIEWS)
     clip = Clip("made up", views, 1, RIG, Meta())
     state = merge_state.init(RIG, PERIOD_S, Settings(), DEFAULT)
     return Prepared(clip, {}, {1: 100, 2: 200}, state, [], 0.0)  # type: ignore[dict-item]

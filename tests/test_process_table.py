@@ -7,7 +7,7 @@ import pytest
 from common.bus.process import ProcessContext
 from common.config.settings import Settings
 from common.platform.platform import Job, Started
-from common.video.clip_facts import Clip, Meta, View
+from common.video.clip_facts import Clip, ClipView, Meta
 from runtime.live import process_table
 from runtime.live.process_table import (
     END_S,
@@ -30,7 +30,7 @@ CONTEXT = ProcessContext()
 
 def clip(*numbers: int) -> Clip:
     """Views of 30 frames a second, of which every second is taken."""
-    views = [View(n, f"cam{n}.avi", (160, 120), (160, 120), 30.0, 9) for n in numbers]
+    views = [ClipView(n, f"cam{n}.avi", (160, 120), (160, 120), 30.0, 9) for n in numbers]
     return Clip("room", tuple(views), 2, None, Meta())
 
 

@@ -9,7 +9,7 @@ from staging import RIG, report
 from calibration.gate.rig_trust import Trust
 from calibration.tracks.lateness import UNSEEN, Clock
 from common.bus.messages import Body, Box, Landmarks, Report, ViewerNumber
-from common.video.clip_facts import Clip, Meta, View
+from common.video.clip_facts import Clip, ClipView, Meta
 from runtime.offline import rig_check
 from runtime.offline.rig_check import (
     DOUBTED,
@@ -51,7 +51,7 @@ def test_a_run_that_is_not_believable_says_what_is_wrong_and_what_to_do_in_one_l
 def two_views(late_s: float = 0.0) -> Clip:
     size = (160, 120)
     views = tuple(
-        View(number, f"cam{number}.avi", size, size, 15.0, 60, late_s=late_s * (number == 2))
+        ClipView(number, f"cam{number}.avi", size, size, 15.0, 60, late_s=late_s * (number == 2))
         for number in (1, 2)
     )
     return Clip("late", views, 1, None, Meta())
@@ -254,7 +254,7 @@ def test_times_in_the_summary_are_rounded_to_what_is_known_of_them() -> None:
 
 
 def test_of_three_cameras_what_two_tell_is_left_out_and_that_is_said() -> None:
-    third = View(3, "cam3.avi", (160, 120), (160, 120), 15.0, 60)
+    third = ClipView(3, "cam3.avi", (160, 120), (160, 120), 15.0, 60)
     pair = two_views()
     three = msgspec.structs.replace(pair, views=(*pair.views, third))
     witness = Witness()
@@ -270,7 +270,7 @@ def test_of_three_cameras_what_two_tell_is_left_out_and_that_is_said() -> None:
 
 def test_two_of_several_cameras_are_held_against_each_other_whatever_their_numbers() -> None:
     first, _ = two_views().views
-    third = View(3, "cam3.avi", (160, 120), (160, 120), 15.0, 60)
+    third = ClipView(3, "cam3.avi", (160, 120), (160, 120), 15.0, 60)
     witness = Witness()
     witness({}, {1: seen_at(1, 0.1), 3: seen_at(3, 0.3)}, body_with())
     clip = msgspec.structs.replace(two_views(), views=(first, third))

@@ -20,7 +20,7 @@ from common.method import METHODS, Method
 from common.rig.camera import paper_rig
 from common.rig.rig_file import CalibrationError
 from common.rig.upright import Shift
-from common.video.clip_facts import Clip, Meta, View
+from common.video.clip_facts import Clip, ClipView, Meta
 from runtime.offline import rig_from_person
 from runtime.offline.lockstep import Decoders, track_clip
 from runtime.offline.rig_from_person import (
@@ -66,8 +66,8 @@ TURNED = paper_rig((160, 120), (200.0, 200.0), (4.0, 4.0))
 
 def two_views(**changed: Any) -> Clip:
     """Two films of one size; view 2 has twice the rate, and every second frame is looked at."""
-    first = View(1, "a.avi", (320, 240), (160, 120), 15.0, 60)
-    second = View(2, "b.avi", (320, 240), (160, 120), 30.0, 120)
+    first = ClipView(1, "a.avi", (320, 240), (160, 120), 15.0, 60)
+    second = ClipView(2, "b.avi", (320, 240), (160, 120), 30.0, 120)
     return msgspec.structs.replace(Clip("two", (first, second), 2, None, Meta()), **changed)
 
 

@@ -13,15 +13,15 @@ from calibration.tracks.lateness import Clock
 from common.config.settings import Settings
 from common.rig.camera import paper_rig
 from common.rig.rig_file import CalibrationError
-from common.video.clip_facts import Clip, Meta, View
+from common.video.clip_facts import Clip, ClipView, Meta
 from runtime.offline import rig_of_clips
 from runtime.offline.rig_from_person import ON_TIME
 from runtime.offline.rig_of_clips import Given, calibrated_by_clips
 
 RIG = paper_rig((160, 120), (200.0, 210.0), (4.0, 4.0))
 QUALITY = Quality((), 1.75, 40, 12.0, 1.0, (0.5,), (0.1,))
-FIRST = View(1, "a.avi", (320, 240), (160, 120), 15.0, 60)
-SECOND = View(2, "b.avi", (320, 240), (160, 120), 15.0, 60)
+FIRST = ClipView(1, "a.avi", (320, 240), (160, 120), 15.0, 60)
+SECOND = ClipView(2, "b.avi", (320, 240), (160, 120), 15.0, 60)
 TWO = Clip("two", (FIRST, SECOND), 1, None, Meta())
 
 
@@ -58,7 +58,7 @@ class Clips:
         return self.clips[settings.clip]
 
     @contextmanager
-    def outside_sources(self, settings: Settings, views: tuple[View, ...]) -> Iterator[Any]:
+    def outside_sources(self, settings: Settings, views: tuple[ClipView, ...]) -> Iterator[Any]:
         assert views == self.clips[settings.clip].views
         self.open_sources += 1
         yield {"of": settings.clip}
@@ -107,7 +107,7 @@ def test_what_is_not_known_is_looked_for(monkeypatch: pytest.MonkeyPatch) -> Non
     "views", [(FIRST,), (FIRST, msgspec.structs.replace(SECOND, frames=0))], ids=["one", "camera"]
 )
 def test_a_clip_without_two_films_is_refused(
-    monkeypatch: pytest.MonkeyPatch, views: tuple[View, ...]
+    monkeypatch: pytest.MonkeyPatch, views: tuple[ClipView, ...]
 ) -> None:
     clips = Clips(monkeypatch, TWO, msgspec.structs.replace(TWO, views=views))
     with pytest.raises(

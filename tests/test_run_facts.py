@@ -10,14 +10,17 @@ from staging import RIG
 
 from common.bus.control_messages import Cameras, Pulse
 from common.bus.messages import Body, Posture
-from common.video.clip_facts import Clip, Meta, View
+from common.video.clip_facts import Clip, ClipView, Meta
 from runtime.live.launch import nothing_heard
 from runtime.live.recorded import SoFar
 from runtime.live.run_facts import facts_of, facts_of_clip, note_lost
 
 CLIP = Clip(
     "room",
-    (View(1, "cam1.avi", (160, 120), (160, 120), 15.0, 0), View(2, 3, (8, 6), (8, 6), 15.0, 0)),
+    (
+        ClipView(1, "cam1.avi", (160, 120), (160, 120), 15.0, 0),
+        ClipView(2, 3, (8, 6), (8, 6), 15.0, 0),
+    ),
     1,
     None,
     Meta("anna", "squat"),

@@ -6,14 +6,14 @@ import pytest
 
 from common.bus.messages import Body
 from common.config.settings import Settings
-from common.video.clip_facts import Clip, Meta, View
+from common.video.clip_facts import Clip, ClipView, Meta
 from runtime.live.admission import LiveRefused
 from runtime.live.page_desk import SAVED
 from runtime.live.run_folder import KEPT, new_journal, new_log
 from runtime.store.journal import has_journal
 from runtime.store.past_journal import LOG, read_journal
 
-CLIP = Clip("room", (View(1, 0, (160, 120), (160, 120), 15.0, 0),), 1, None, Meta())
+CLIP = Clip("room", (ClipView(1, 0, (160, 120), (160, 120), 15.0, 0),), 1, None, Meta())
 
 
 def cut_short(folder: Path, notes: list[str]) -> None:

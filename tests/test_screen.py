@@ -7,11 +7,11 @@ from rich.console import Console
 
 from common.bus.control_messages import Pulse
 from common.config.settings import Settings
-from common.video.clip_facts import Clip, Meta, View
+from common.video.clip_facts import Clip, ClipView, Meta
 from runtime.live.launch import nothing_heard
 from runtime.live.screen import Screen, warnings_of
 
-VIEW = View(1, "cam1.avi", (160, 120), (160, 120), 30.0, 60)
+VIEW = ClipView(1, "cam1.avi", (160, 120), (160, 120), 30.0, 60)
 CLIP = Clip("walk", (VIEW,), 4, None, Meta(), ("it is short",))
 
 

@@ -4,14 +4,14 @@ import msgspec
 import numpy as np
 import pytest
 
-from common.video.clip_facts import View
+from common.video.clip_facts import ClipView
 from common.video.shared_rate import at_one_rate
 
 
-def view(number: int, hz: float, seconds: float = 10.0, late_s: float = 0.0) -> View:
+def view(number: int, hz: float, seconds: float = 10.0, late_s: float = 0.0) -> ClipView:
     size = (160, 120)
     frames = round(hz * seconds)
-    return View(number, f"cam{number}.avi", size, size, hz, frames, late_s=late_s)
+    return ClipView(number, f"cam{number}.avi", size, size, hz, frames, late_s=late_s)
 
 
 @pytest.mark.parametrize(("slow_hz", "fast_hz"), [(25.0, 29.97), (15.0, 30.0), (24.0, 60.0)])
@@ -52,7 +52,7 @@ def test_frames_that_are_looked_at_follow_each_other() -> None:
 def test_rates_that_are_nearly_one_and_cameras_are_left_alone() -> None:
     nearly = (view(1, 30.0), view(2, 29.97))
     assert at_one_rate(nearly, 1) == nearly
-    camera = View(2, 0, (160, 120), (160, 120), 30.0, 0)
+    camera = ClipView(2, 0, (160, 120), (160, 120), 30.0, 0)
     assert at_one_rate((view(1, 15.0), camera), 1) == (view(1, 15.0), camera)
     assert at_one_rate((view(1, 15.0),), 1) == (view(1, 15.0),)
 

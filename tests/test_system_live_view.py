@@ -9,7 +9,7 @@ import pytest
 
 from common.bus.messages import Landmarks
 from common.rig.upright import Upright
-from common.video.clip_facts import View
+from common.video.clip_facts import ClipView
 from common.video.pictures import CameraLost, Decoded, Ending, Wanted
 from viewer import capture
 from viewer.capture import Live, RoomClock, recorded
@@ -60,9 +60,9 @@ def taken(live: Live, frames: int) -> list[CapturedFrame]:
 UPRIGHT = Upright(1, 6, 8, 6, 8)
 
 
-def view(**changed: Any) -> View:
+def view(**changed: Any) -> ClipView:
     fields = {"number": 1, "source": "cam1.avi", "source_size": (8, 6), "size": (8, 6)}
-    return View(**{**fields, "fps": 10.0, "frames": 4, **changed})
+    return ClipView(**{**fields, "fps": 10.0, "frames": 4, **changed})
 
 
 def test_a_recorded_view_asks_for_every_third_frame_from_a_start() -> None:

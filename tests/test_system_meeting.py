@@ -22,7 +22,7 @@ from common.config.part_settings import BusSettings, PageSettings
 from common.config.settings import Settings
 from common.method import DEFAULT
 from common.rig.camera import paper_rig
-from common.video.clip_facts import View
+from common.video.clip_facts import ClipView
 from common.video.pictures import DecoderDied
 from integrator import __main__ as integrator
 from integrator import merge_state
@@ -197,7 +197,7 @@ class BrokenFilm:
 def test_nobody_waits_for_a_viewer_whose_video_broke() -> None:
     bus = LocalBus()
     ended = bus.subscribe(Ended)
-    view = View(1, "cam1.avi", (160, 120), (160, 120), fps=15.0, frames=10)
+    view = ClipView(1, "cam1.avi", (160, 120), (160, 120), fps=15.0, frames=10)
     setup = track.Setup(1, None, Settings(), DEFAULT)
     state = track.init(setup, learn([np.zeros((120, 160, 3), np.uint8)]))
     prepared = viewer.Prepared(view, state)

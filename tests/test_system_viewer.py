@@ -20,7 +20,7 @@ from common.bus.messages import Guide, Landmarks, Picture, Report
 from common.bus.process import ProcessContext
 from common.config.settings import Settings
 from common.method import METHODS
-from common.video.clip_facts import View
+from common.video.clip_facts import ClipView
 from common.video.pictures import DecoderDied, Ending
 from viewer import __main__ as viewer_process
 from viewer import track
@@ -40,7 +40,7 @@ from viewer.background.background import learn
 from viewer.captured_frame import CapturedFrame
 from viewer.load_shedding import LoadShedder
 
-VIEW = View(2, "cam2.avi", (64, 48), (64, 48), 15.0, 40)
+VIEW = ClipView(2, "cam2.avi", (64, 48), (64, 48), 15.0, 40)
 EMPTY = learn([np.full((48, 64, 3), 100, np.uint8)])
 
 

@@ -7,7 +7,7 @@ from common.bus.messages import Landmarks, ViewerNumber
 from common.config.settings import Settings
 from common.method import DEFAULT, PAPER, Method
 from common.rig.camera import Camera, Rig
-from common.video.clip_facts import Clip, Meta, View
+from common.video.clip_facts import Clip, ClipView, Meta
 from runtime.steps.together import viewer_of
 from viewer.background.background import learn
 
@@ -26,7 +26,7 @@ FIRST, SECOND = camera("cam1", 90.0), camera("cam2", 110.0)
 
 
 def clip_of(*numbers: ViewerNumber, calibrated: bool = True) -> Clip:
-    views = tuple(View(n, f"cam{n}.avi", SIZE, SIZE, 15.0, 60) for n in numbers)
+    views = tuple(ClipView(n, f"cam{n}.avi", SIZE, SIZE, 15.0, 60) for n in numbers)
     own = tuple((FIRST, SECOND)[n - 1] for n in numbers)
     return Clip("walk", views, 1, Rig(*SIZE, own) if calibrated else None, Meta())
 

@@ -11,7 +11,7 @@ from lying_cameras import filmed_lying
 from common.config.settings import Settings
 from common.rig.camera import Camera, Rig, as_matrix, as_row, paper_rig, project
 from common.rig.rig_file import load_rig
-from common.video.clip_facts import Clip, Meta, View
+from common.video.clip_facts import Clip, ClipView, Meta
 from common.video.clip_sources import ClipError
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
@@ -80,7 +80,7 @@ def test_a_clip_of_lying_cameras_has_upright_pictures(clip: Path, tmp_path: Path
         assert project(one, points) == pytest.approx(project(other, points) / 2, abs=1e-6)
 
 
-def lying_rig() -> tuple[Rig, tuple[View, View]]:
+def lying_rig() -> tuple[Rig, tuple[ClipView, ClipView]]:
     """Two cameras of 160x120, the first of which is rolled by a quarter turn to the left."""
     rig = paper_rig((160, 120), (200.0, 200.0), (4.0, 4.5))
     one, two = rig.cameras
@@ -89,8 +89,8 @@ def lying_rig() -> tuple[Rig, tuple[View, View]]:
         one.name, one.K, as_matrix(turn @ np.array(one.R)), as_row(turn @ np.array(one.t))
     )
     views = (
-        View(1, "a.avi", (640, 480), (160, 120), 15.0, 9),
-        View(2, "b.avi", (640, 480), (160, 120), 15.0, 9),
+        ClipView(1, "a.avi", (640, 480), (160, 120), 15.0, 9),
+        ClipView(2, "b.avi", (640, 480), (160, 120), 15.0, 9),
     )
     return msgspec.structs.replace(rig, cameras=(rolled, two)), views
 

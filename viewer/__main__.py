@@ -18,7 +18,7 @@ from common.bus.rate import Pace
 from common.config.settings import Settings
 from common.method import METHODS
 from common.npz_file import Facts
-from common.video.clip_facts import View, shortfall
+from common.video.clip_facts import ClipView, shortfall
 from common.video.clip_sources import footage_of
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
@@ -92,7 +92,7 @@ class Guides:
 class Prepared(NamedTuple):
     """All that a viewer is of, before its first frame."""
 
-    view: View
+    view: ClipView
     """Of its camera."""
     state: track.State
     warnings: tuple[str, ...] = ()
@@ -218,13 +218,13 @@ def _prepared(settings: Settings, viewer: ViewerNumber, context: ProcessContext)
     return Prepared(view, state, warnings, context.kept)
 
 
-def _empty_frames(state: track.State, view: View) -> int:
+def _empty_frames(state: track.State, view: ClipView) -> int:
     """How many frames that are looked at make a background."""
     every, empty_s = state.setup.settings.every, state.setup.settings.silhouette.empty_s
     return math.ceil(view.frames_in(empty_s) / every)
 
 
-def _beside_the_other(view: View, settings: Settings, decoder: Decoder) -> View:
+def _beside_the_other(view: ClipView, settings: Settings, decoder: Decoder) -> ClipView:
     """The view at the rate of both, where the other's video is on this host too."""
     named = footage_of(settings)
     here = [isinstance(each.source, str) and Path(each.source).is_file() for each in named]

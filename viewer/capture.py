@@ -9,7 +9,7 @@ import msgspec
 
 from common.bus.mailbox import Mailbox
 from common.bus.rate import Clock, wait_until
-from common.video.clip_facts import View
+from common.video.clip_facts import ClipView
 from common.video.decoding import Decoder
 from common.video.pictures import CameraLost, Decoded, Ending, Reader, Wanted
 from viewer.captured_frame import CapturedFrame
@@ -23,7 +23,7 @@ PATIENCE_S: Final = 30.0
 
 
 def recorded(
-    view: View, every: int, decoder: Reader, source: OutsideSource | None = None, start: int = 0
+    view: ClipView, every: int, decoder: Reader, source: OutsideSource | None = None, start: int = 0
 ) -> Iterator[CapturedFrame]:
     """Every n-th frame of a video, as fast as they come.
 
@@ -69,7 +69,7 @@ class Live:
 
     def __init__(
         self,
-        view: View,
+        view: ClipView,
         every: int,
         room: RoomClock,
         source: OutsideSource | None = None,

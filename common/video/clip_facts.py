@@ -40,7 +40,7 @@ class Meta(msgspec.Struct, frozen=True):
     """When each frame of a camera was taken, where frames are missing."""
 
 
-class View(msgspec.Struct, frozen=True):
+class ClipView(msgspec.Struct, frozen=True):
     """One camera of a clip."""
 
     number: ViewerNumber
@@ -133,7 +133,7 @@ class Clip(msgspec.Struct, frozen=True):
     """The views of one room."""
 
     name: str
-    views: tuple[View, ...]
+    views: tuple[ClipView, ...]
     every: int
     rig: Rig | None
     """Calibration at the working size, one camera a view; None where there is none."""
@@ -144,7 +144,7 @@ class Clip(msgspec.Struct, frozen=True):
     """The person's lengths, metres, where they were measured before."""
 
 
-def unread(view: View, ending: Ending) -> bool:
+def unread(view: ClipView, ending: Ending) -> bool:
     """Whether the end of a video is lost: it was cut off, or is damaged.
 
     One that claims too many frames, as its duration is the sound's or an edit list hides some of
@@ -153,7 +153,7 @@ def unread(view: View, ending: Ending) -> bool:
     return ending.damaged > 0 and ending.frames < view.frames
 
 
-def shortfall(view: View, ending: Ending) -> str:
+def shortfall(view: ClipView, ending: Ending) -> str:
     """What to say of a video that could not be read to its end, or is damaged; "" if neither."""
     if unread(view, ending):
         read = f"{ending.frames} of {view.frames} frames could be read"
@@ -164,7 +164,7 @@ def shortfall(view: View, ending: Ending) -> str:
     return ""
 
 
-def unread_facts(endings: Iterable[tuple[View, Ending]]) -> dict[str, Any]:
+def unread_facts(endings: Iterable[tuple[ClipView, Ending]]) -> dict[str, Any]:
     """Of the videos whose end is lost, for the summary: how many frames were read of how many."""
     lost = {
         str(view.source): {"read": ending.frames, "of": view.frames}

@@ -16,7 +16,7 @@ from common.config.settings import Settings
 from common.rig.absurd_rig import nearly_one_view, refuse_absurd
 from common.rig.camera import Rig
 from common.rig.rig_file import CalibrationError, fitted, load_rig
-from common.video.clip_facts import Clip, Meta, View
+from common.video.clip_facts import Clip, ClipView, Meta
 from common.video.clip_sources import NOTHING, ClipError, Footage, companions_folder, footage_of
 from common.video.decoding import Decoder
 from common.video.frame_times import timed
@@ -124,7 +124,7 @@ def _meta(folder: Path) -> Meta:
     return meta
 
 
-def _view(named: Footage, settings: Settings, meta: Meta, decoder: Decoder) -> View:
+def _view(named: Footage, settings: Settings, meta: Meta, decoder: Decoder) -> ClipView:
     info = timed(probed(named.source, decoder))
     if named.settings.background:
         _refuse_another_scene(named, probed(named.settings.background, decoder), info)
@@ -136,7 +136,7 @@ def _view(named: Footage, settings: Settings, meta: Meta, decoder: Decoder) -> V
     if fps <= 0:
         raise ClipError(f"{named.source} has no frame rate: set fps in a meta.json beside it")
     size = (info.width, info.height)
-    return View(
+    return ClipView(
         number=named.number,
         name=named.name,
         source=named.source,
@@ -212,7 +212,7 @@ def _refuse_a_lost_head(path: Path) -> None:
 
 
 def _rig(
-    settings: Settings, folder: Path, found: Sequence[Footage], views: tuple[View, ...]
+    settings: Settings, folder: Path, found: Sequence[Footage], views: tuple[ClipView, ...]
 ) -> Rig | None:
     """The calibration of those cameras of a clip that are looked at, at their working size."""
     path = find_calibration(settings, folder)
@@ -262,7 +262,7 @@ def _places(
     return places
 
 
-def _oddities(views: tuple[View, ...], meta: Meta, rig: Rig | None) -> Iterator[str]:
+def _oddities(views: tuple[ClipView, ...], meta: Meta, rig: Rig | None) -> Iterator[str]:
     for view in views:
         told_s = meta.capture_s.get(view.name, ())
         if told_s and view.frames and len(told_s) != view.frames:

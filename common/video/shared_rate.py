@@ -6,7 +6,7 @@ import msgspec
 import numpy as np
 
 from common.body.body import Vector
-from common.video.clip_facts import TOUCH_S, View
+from common.video.clip_facts import TOUCH_S, ClipView
 
 SAME_RATE: Final = 0.01
 """Frame rates that differ by less drift apart by less than a frame in a clip of 100."""
@@ -15,7 +15,7 @@ SAME_VARYING: Final = 0.05
 usual gap, which times that are rounded to milliseconds tell no better (33 ms of 33.3)."""
 
 
-def at_one_rate(views: tuple[View, ...], every: int) -> tuple[View, ...]:
+def at_one_rate(views: tuple[ClipView, ...], every: int) -> tuple[ClipView, ...]:
     """The views of a clip, at the rate of the slowest.
 
     A frame without a partner would have the body follow one view alone for a moment, again and
@@ -31,12 +31,12 @@ def at_one_rate(views: tuple[View, ...], every: int) -> tuple[View, ...]:
     return tuple(_meeting(view, slow, every) if _is_faster(view, slow) else view for view in views)
 
 
-def _is_faster(view: View, slow: View) -> bool:
+def _is_faster(view: ClipView, slow: ClipView) -> bool:
     varies = view.capture_s or slow.capture_s
     return view.fps / slow.fps - 1.0 > (SAME_VARYING if varies else SAME_RATE)
 
 
-def _meeting(fast: View, slow: View, every: int) -> View:
+def _meeting(fast: ClipView, slow: ClipView, every: int) -> ClipView:
     """The faster view, with the frames nearest to those of the slower: each at most once, and none
     that is farther than half of its own period."""
     own_s, wanted_s = _times_s(fast), _times_s(slow)[::every]
@@ -48,5 +48,5 @@ def _meeting(fast: View, slow: View, every: int) -> View:
     return msgspec.structs.replace(fast, fps=slow.fps, capture_s=times_s, picked=picked)
 
 
-def _times_s(view: View) -> Vector:
+def _times_s(view: ClipView) -> Vector:
     return np.array([view.captured_s(n) for n in range(view.frames)])

@@ -5,11 +5,11 @@ import msgspec
 from common.rig.camera import Camera, Rig
 from common.rig.rig_file import CalibrationError
 from common.rig.upright_camera import filed_camera, upright_camera, upright_of
-from common.video.clip_facts import Clip, View
+from common.video.clip_facts import Clip, ClipView
 from common.video.clip_sources import ClipError
 
 
-def upright_views(rig: Rig, views: tuple[View, ...]) -> tuple[Rig, tuple[View, ...]]:
+def upright_views(rig: Rig, views: tuple[ClipView, ...]) -> tuple[Rig, tuple[ClipView, ...]]:
     """The rig and the views as they are worked on.
 
     Args:
@@ -39,7 +39,7 @@ def filed_rig(clip: Clip) -> Rig | None:
     return msgspec.structs.replace(clip.rig, width=width, height=height, cameras=cameras)
 
 
-def _upright(camera: Camera, view: View) -> View:
+def _upright(camera: Camera, view: ClipView) -> ClipView:
     upright = upright_of(camera, view.size)
     if upright is None:
         return view

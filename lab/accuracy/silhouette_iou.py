@@ -11,7 +11,7 @@ from common.config.settings import Settings
 from common.method import METHODS
 from common.npz_file import Arrays
 from common.raster.similarity import Mask
-from common.video.clip_facts import View
+from common.video.clip_facts import ClipView
 from common.video.clips import open_clip
 from runtime.offline.lockstep import Decoders
 from viewer.capture import recorded
@@ -54,7 +54,7 @@ def overlaps(settings: Settings, truth: Arrays, decoders: Decoders) -> dict[str,
 
 
 def _of_view(
-    view: View, every: int, settings: Settings, truth: Arrays, decoders: Decoders
+    view: ClipView, every: int, settings: Settings, truth: Arrays, decoders: Decoders
 ) -> Overlap:
     packed, width = truth[f"mask_{view.name}"], int(truth["mask_shape"][1])
     row_of = truth.get(f"frames_{view.name}", np.arange(len(packed)))

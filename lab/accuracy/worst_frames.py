@@ -12,7 +12,7 @@ from common.body.body import Vector
 from common.config.settings import Settings
 from common.npz_file import Arrays, Facts
 from common.rig.camera import project
-from common.video.clip_facts import View, whole_rig
+from common.video.clip_facts import ClipView, whole_rig
 from common.video.clips import open_clip
 from common.video.pictures import Image
 from lab.accuracy.accuracy import INDEX, JOINTS, Compared
@@ -130,7 +130,7 @@ def _shown(
     return np.concatenate(parts, axis=1)
 
 
-def _taken(view: View, index: int, decoders: Decoders) -> tuple[Image, float]:
+def _taken(view: ClipView, index: int, decoders: Decoders) -> tuple[Image, float]:
     """A frame of a video at HEIGHT_PX, and how many times as large as it was recorded."""
     last = None
     for frame in recorded(view, 1, decoders.of[view.number]):

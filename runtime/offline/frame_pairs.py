@@ -7,7 +7,7 @@ from typing import Final
 
 from common.bus.messages import ViewerNumber
 from common.config.part_settings import SilhouetteSettings
-from common.video.clip_facts import Clip, View
+from common.video.clip_facts import Clip, ClipView
 from common.video.pictures import ALL, Decoded, Ending, Reader, Size, Source, Wanted
 from integrator.pairing import are_together
 from viewer.capture import recorded
@@ -51,7 +51,7 @@ def openings(clip: Clip, settings: SilhouetteSettings, readers: Readers) -> list
     """
     left = threading.Event()
 
-    def learnt(view: View) -> Opening:
+    def learnt(view: ClipView) -> Opening:
         return opening_of_view(view, settings, _UntilLeft(readers[view.number], left))
 
     with ThreadPoolExecutor(len(clip.views)) as pool:

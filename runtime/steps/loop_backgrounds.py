@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 
 from common.bus.messages import ViewerNumber
-from common.video.clip_facts import Clip, View
+from common.video.clip_facts import Clip, ClipView
 from common.video.clips import SAME_ASPECT
 from common.video.pictures import Image
 from runtime.steps.loop_images import Images, by_viewer, picture_of
@@ -46,6 +46,6 @@ def empty_of(plates: Plates, clip: Clip) -> Learns:
     return {view.number: (picture_of(plates[view.number], view),) for view in clip.views}
 
 
-def is_enough(empty: tuple[Image, ...], view: View, empty_s: float) -> bool:
+def is_enough(empty: tuple[Image, ...], view: ClipView, empty_s: float) -> bool:
     """Whether a camera showed the empty room for so long."""
     return len(empty) >= view.frames_in(empty_s)

@@ -12,7 +12,7 @@ from common.config.picture_size import working_size
 from common.rig.absurd_rig import refuse_absurd
 from common.rig.camera import Rig
 from common.rig.rig_file import CalibrationError, check_rig, fitted, load_rig
-from common.video.clip_facts import Clip, Meta, View
+from common.video.clip_facts import Clip, ClipView, Meta
 from common.video.upright_views import filed_rig, upright_views
 
 Size = tuple[int, int]
@@ -67,7 +67,7 @@ def clip_of(
         CalibrationError: When the calibration is of other pictures, or no cameras stand so.
     """
     views = tuple(
-        View(n, name, sizes[n], working_size(sizes[n], bound), rate_hz, 0, name=name)
+        ClipView(n, name, sizes[n], working_size(sizes[n], bound), rate_hz, 0, name=name)
         for name, n in cameras.numbers.items()
     )
     rig, where = cameras.rig, cameras.where

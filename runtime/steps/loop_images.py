@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from common.bus.messages import ViewerNumber
-from common.video.clip_facts import View
+from common.video.clip_facts import ClipView
 from common.video.pictures import Image
 from common.video.reduction import reduced
 
@@ -35,7 +35,7 @@ def by_viewer(
     return {numbers[name]: _image(name, image) for name, image in named}
 
 
-def picture_of(image: Image, view: View) -> Image:
+def picture_of(image: Image, view: ClipView) -> Image:
     """What is worked on of an image: a copy, for a program may read its next image into this one.
 
     It lies in memory row by row and can be written, whatever the image does: for another kind of

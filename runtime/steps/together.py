@@ -8,7 +8,7 @@ from common.bus.instant import instant_of
 from common.bus.messages import Body, Guide, Landmarks, Report, ViewerNumber
 from common.config.settings import Settings
 from common.method import Method
-from common.video.clip_facts import Clip, View, whole_rig
+from common.video.clip_facts import Clip, ClipView, whole_rig
 from integrator import merge, merge_state
 from integrator.live_rig.live_calibration import LiveCalibration
 from viewer import track
@@ -22,7 +22,7 @@ Each = Callable[..., Iterable[Any]]
 
 
 def viewer_of(
-    view: View,
+    view: ClipView,
     clip: Clip,
     settings: Settings,
     method: Method,

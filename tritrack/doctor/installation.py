@@ -192,12 +192,12 @@ def _extra(use: str, package: str, extra: str) -> Finding:
 
 def _mediapipe() -> Finding:
     from common.config.part_settings import SettingsError
-    from common.video.clip_facts import View
+    from common.video.clip_facts import ClipView
     from viewer.landmarks.mediapipe_source import INSTALL, MediaPipe
 
     what = "landmarks = 'mediapipe' (mediapipe)"
     try:
-        with MediaPipe(View(1, "", (64, 48), (64, 48), 15.0, 0)) as source:
+        with MediaPipe(ClipView(1, "", (64, 48), (64, 48), 15.0, 0)) as source:
             source.ready()
         return Finding(what, True, version("mediapipe"), needed=False)
     except (SettingsError, PackageNotFoundError) as error:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from common.bus.messages import Landmarks
 from common.config.part_settings import SettingsError
 from common.rig.upright_camera import as_worked_on
-from common.video.clip_facts import View
+from common.video.clip_facts import ClipView
 from common.video.pictures import Decoded, Size
 from viewer.landmarks.fifteen_joints import facing_deg, fifteen, fifteen_shares
 from viewer.landmarks.keypoint_layouts import (
@@ -52,7 +52,7 @@ class KeypointFiles:
 
     large: Size | None = None
 
-    def __init__(self, folder: Path, view: View, alone: bool) -> None:
+    def __init__(self, folder: Path, view: ClipView, alone: bool) -> None:
         """Read them.
 
         Args:
@@ -175,7 +175,7 @@ def _landmarks_of(person: Person) -> Landmarks:
     )
 
 
-def _folder_of(folder: Path, view: View, alone: bool) -> Path:
+def _folder_of(folder: Path, view: ClipView, alone: bool) -> Path:
     """Where the files of a view stand."""
     stem = Path(str(view.source)).stem
     names = [view.name, f"{stem}_json", *([""] if alone else [])]

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from common.bus.messages import ViewerNumber
 from common.config.settings import Settings
-from common.video.clip_facts import View
+from common.video.clip_facts import ClipView
 from common.video.clip_sources import footage_of
 from viewer.landmarks.keypoint_files import KeypointFiles
 from viewer.landmarks.landmark_looks import refuse_no_network
@@ -18,7 +18,7 @@ Sources = Mapping[ViewerNumber, OutsideSource]
 
 
 @contextmanager
-def outside_sources(settings: Settings, views: Sequence[View]) -> Iterator[Sources]:
+def outside_sources(settings: Settings, views: Sequence[ClipView]) -> Iterator[Sources]:
     """The sources of these views, ready to be asked, and ended when all is done.
 
     Args:
@@ -40,7 +40,7 @@ def outside_sources(settings: Settings, views: Sequence[View]) -> Iterator[Sourc
             yield _files(settings, views)
 
 
-def refuse_landmarks(settings: Settings, views: Sequence[View]) -> None:
+def refuse_landmarks(settings: Settings, views: Sequence[ClipView]) -> None:
     """Say before any process starts what `outside_sources` would fail on in one of them.
 
     Raises:
@@ -55,7 +55,7 @@ def refuse_landmarks(settings: Settings, views: Sequence[View]) -> None:
         _files(settings, views)
 
 
-def _files(settings: Settings, views: Sequence[View]) -> dict[ViewerNumber, KeypointFiles]:
+def _files(settings: Settings, views: Sequence[ClipView]) -> dict[ViewerNumber, KeypointFiles]:
     alone = len(footage_of(settings)) == 1
     folder = Path(settings.landmarks)
     return {view.number: KeypointFiles(folder, view, alone) for view in views}

@@ -10,7 +10,7 @@ from common.config.part_settings import SettingsError
 from common.config.picture_size import working_size
 from common.platform.platform import Broken, Child
 from common.platform.platforms import platform
-from common.video.clip_facts import View
+from common.video.clip_facts import ClipView
 from common.video.pictures import Decoded, Size
 from viewer.landmarks.mediapipe_joints import landmarks_of
 from viewer.landmarks.mediapipe_protocol import BYTES, POINTS, REFUSED, Answer, answer_of
@@ -47,7 +47,7 @@ class MediaPipe:
     The child starts with this, and ends with it, with the viewer, or when it breaks.
     """
 
-    def __init__(self, view: View, stall_s: float = STALL_S) -> None:
+    def __init__(self, view: ClipView, stall_s: float = STALL_S) -> None:
         """Start the child; see `ready`.
 
         Raises:

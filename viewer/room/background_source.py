@@ -11,7 +11,7 @@ import numpy as np
 from common.atomic_file import replacing
 from common.bus.messages import Landmarks
 from common.config.part_settings import SilhouetteSettings
-from common.video.clip_facts import View
+from common.video.clip_facts import ClipView
 from common.video.clip_sources import ClipError
 from common.video.decoding import Decoder
 from common.video.pictures import Image, Reader, Source, Wanted, named
@@ -67,7 +67,7 @@ class FilmBackground(NamedTuple):
     """What is odd about how that is known; "" if nothing is."""
 
 
-def opening_of_view(view: View, settings: SilhouetteSettings, decoder: Reader) -> Opening:
+def opening_of_view(view: ClipView, settings: SilhouetteSettings, decoder: Reader) -> Opening:
     """What a view shows without the person, and who is seen first.
 
     Args:
@@ -89,7 +89,7 @@ def opening_of_view(view: View, settings: SilhouetteSettings, decoder: Reader) -
 
 
 def of_clip(
-    opening: Sequence[Image], sample: Sequence[Image], settings: SilhouetteSettings, view: View
+    opening: Sequence[Image], sample: Sequence[Image], settings: SilhouetteSettings, view: ClipView
 ) -> Opening:
     """The background of a clip, what is odd about how that is known, and who is seen first.
 
@@ -132,7 +132,7 @@ def of_clip(
     return Opening(best, odd, first)
 
 
-def _estimated(view: View, setting: str) -> str:
+def _estimated(view: ClipView, setting: str) -> str:
     """What is odd about a background that no empty picture shows, and where to name one."""
     return (
         f"{view.source} does not open with an empty room: the background is estimated from the "
@@ -141,7 +141,7 @@ def _estimated(view: View, setting: str) -> str:
 
 
 def opening_of_run(
-    view: View, settings: SilhouetteSettings, decoder: Decoder, kept: Path | None
+    view: ClipView, settings: SilhouetteSettings, decoder: Decoder, kept: Path | None
 ) -> Opening:
     """The same in a live run, where a viewer may be started again with a person before its camera.
 
@@ -166,7 +166,7 @@ def opening_of_run(
     return opening
 
 
-def _refuse_another_size(view: View, known: Background) -> None:
+def _refuse_another_size(view: ClipView, known: Background) -> None:
     """The rig is of the pictures that the run began with."""
     height, width = known.centre.shape[:2]
     if view.size != (width, height):
@@ -177,7 +177,7 @@ def _refuse_another_size(view: View, known: Background) -> None:
         )
 
 
-def keep(kept: Path, view: View, background: Background) -> None:
+def keep(kept: Path, view: ClipView, background: Background) -> None:
     """Write down what was learnt of a camera's background: its viewer may be started again.
 
     Args:
@@ -189,11 +189,13 @@ def keep(kept: Path, view: View, background: Background) -> None:
         np.savez(file, allow_pickle=False, **background._asdict())
 
 
-def _name_of(view: View) -> str:
+def _name_of(view: ClipView) -> str:
     return f"background_{view.number}.npz"
 
 
-def background_of_film(view: View, settings: SilhouetteSettings, decoder: Reader) -> FilmBackground:
+def background_of_film(
+    view: ClipView, settings: SilhouetteSettings, decoder: Reader
+) -> FilmBackground:
     """The background of a video, from all over it where that shows enough, and what changes.
 
     Light changes through a video, and with it more than a gain can follow; an empty opening knows
@@ -216,20 +218,20 @@ def background_of_film(view: View, settings: SilhouetteSettings, decoder: Reader
     return FilmBackground(background, patches, odd and _estimated(view, FILM_OPTION))
 
 
-def _pictures(decoder: Reader, source: Source, view: View) -> Iterator[Image]:
+def _pictures(decoder: Reader, source: Source, view: ClipView) -> Iterator[Image]:
     """Those of a source, as the view's are worked on."""
     wanted = Wanted(quarters=view.quarters)
     return (got.picture for got in decoder.frames(source, view.size, wanted))
 
 
-def _now(view: View, settings: SilhouetteSettings, decoder: Reader) -> list[Image]:
+def _now(view: ClipView, settings: SilhouetteSettings, decoder: Reader) -> list[Image]:
     """The first frames that a camera gives."""
     due = view.frames_in(settings.empty_s)
     return list(islice(_pictures(decoder, view.source, view), due))
 
 
 def _looked_at(
-    view: View, settings: SilhouetteSettings, decoder: Reader
+    view: ClipView, settings: SilhouetteSettings, decoder: Reader
 ) -> tuple[list[Image], Iterator[Image]]:
     """The opening frames, and frames from everywhere in the clip: these as they are decoded."""
     pictures = islice(_pictures(decoder, view.source, view), LOOKED_AT)
@@ -237,6 +239,6 @@ def _looked_at(
     return opening, islice(chain(opening, pictures), 0, None, _stride(view))
 
 
-def _stride(view: View) -> int:
+def _stride(view: ClipView) -> int:
     """Frames from one that is looked at to the next."""
     return max(1, math.ceil(min(view.frames, LOOKED_AT) / SAMPLE))
