@@ -15,7 +15,7 @@ from common.body.proportions import thesis_bdp
 from common.bus.bus import Bus, BusError, open_client
 from common.bus.control_messages import Answer, Cameras, Command, Pulse
 from common.bus.message_codec import TOPICS
-from common.bus.messages import Body, Performance, Picture, Posture, Report
+from common.bus.messages import Body, Performance, Picture, Posture, View
 from common.bus.process import READY_S, Heart, ProcessContext, process, settle
 from common.bus.rate import Pace
 from common.config.settings import Settings
@@ -48,11 +48,11 @@ class Subscriber:
         self.bodies = bus.subscribe(Body)
         self.answers = bus.subscribe(Answer)
         self.cameras = bus.subscribe(Cameras)
-        self._reports = bus.subscribe(Report)
+        self._reports = bus.subscribe(View)
         self._pictures = bus.subscribe(Picture)
         self._postures = bus.subscribe(Posture)
         self._pulses = bus.subscribe(Pulse)
-        self._waiting: list[Report] = []
+        self._waiting: list[View] = []
         self._snapshot = Snapshot()
         self._by_process: dict[str, Pulse] = {}
 

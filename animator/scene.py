@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 from common.body.body import JOINT_NAMES, LIMBS, Bdp, Elliptic, Round, Vector
 from common.body.kinematics import HEAD, TORSO, limb_frames
 from common.body.proportions import body_vector
-from common.bus.messages import Body, Picture, Posture, Report
+from common.bus.messages import Body, Picture, Posture, View
 from common.rig.camera import Camera, Rig, centre
 
 Colour = tuple[int, int, int]
@@ -50,7 +50,7 @@ class Snapshot(msgspec.Struct, frozen=True):
     """The newest of everything that is shown; what was not heard yet is missing."""
 
     body: Body | None = None
-    reports: Mapping[int, Report] = {}
+    reports: Mapping[int, View] = {}
     """By viewer."""
     pictures: Mapping[int, Picture] = {}
     """By viewer."""

@@ -41,7 +41,7 @@ from common.bus.control_messages import (
 )
 from common.bus.instant import Instant
 from common.bus.message_codec import TOPICS, MalformedMessage, decode, encode
-from common.bus.messages import Body, Guide, Message, Picture, Report
+from common.bus.messages import Body, Guide, Message, Picture, View
 from common.config.config_file import load
 from common.method import METHODS
 from common.rig.camera import Rig
@@ -78,7 +78,7 @@ def honest(path: Path) -> Honest:
     """A clip followed once."""
     settings = load(path)
     method = METHODS[settings.mode]
-    heard: list[tuple[dict[int, Any], dict[int, Report], Body]] = []
+    heard: list[tuple[dict[int, Any], dict[int, View], Body]] = []
     with Decoders() as decoders:
         track_clip(
             settings, decoders, watch=Watch(lambda *instant: heard.append(instant), heard.clear)
@@ -122,7 +122,7 @@ def others(rig: Rig) -> tuple[Message, ...]:
 
 def heard(known: Honest, at: int, message: Message) -> None:
     """Hand a message to who would hear it."""
-    if isinstance(message, Report):
+    if isinstance(message, View):
         _, complete = pairing.step(pairing.init(1 / 15, (message.viewer,)), message)
         forged = Instant(with_item(known.pairs[at].views, message.viewer - 1, message))
         after, _, _ = merge.step(known.integrator[at], forged)

@@ -29,7 +29,8 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from common.body.body import JOINT_NAMES
-from common.bus.messages import Body, Guide, Report
+from common.body.observation import Landmarks
+from common.bus.messages import Body, Guide, View
 from common.config import config_file
 from common.config.settings import Settings
 from common.rig.camera import Rig
@@ -45,6 +46,10 @@ from runtime.store.pose_arrays import poses
 from viewer import track
 from viewer.captured_frame import CapturedFrame
 from viewer.landmarks import own_landmarks
+
+
+def _landmarks(view: View | None) -> Landmarks | None:
+    return None if view is None or view.person is None else view.person.landmarks
 
 
 class Clock:
@@ -75,9 +80,9 @@ class Alone:
         first, second = undistorted_rig(rig).cameras
         self.cameras, self.bodies = (first, second), list[Body]()
 
-    def watch(self, _: object, reports: dict[int, Report], body: Body) -> None:
+    def watch(self, _: object, reports: dict[int, View], body: Body) -> None:
         """One instant."""
-        first, second = (reports[n].landmarks if n in reports else None for n in (1, 2))
+        first, second = (_landmarks(reports.get(n)) for n in (1, 2))
         joints: tuple[Any, ...] = ()
         if first is not None and second is not None:
             pairs = zip(first.joints_px, second.joints_px, strict=True)

@@ -18,8 +18,8 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from common.body.body import JOINT_NAMES
-from common.bus.instant import Instant, two_views
-from common.bus.messages import Body, Guide, Report
+from common.bus.instant import Instant, first_two
+from common.bus.messages import Body, Guide, View
 from common.config.part_settings import BodySettings
 from common.config.settings import Settings
 from common.method import METHODS
@@ -57,14 +57,14 @@ def live_bodies(settings: Settings, decoders: Decoders) -> list[Body]:
     coming: list[tuple[float, Solved]] = []
     with outside_sources(settings, clip.views) as sources:
         for frames in instants(clip, decoders.of, sources):
-            reports: dict[int, Report] = {}
+            reports: dict[int, View] = {}
             for number, frame in frames.items():
                 viewers[number], report = track.step(viewers[number], frame, guide)
                 reports[number] = set_back(report, search.late_s)
             pair = Instant((reports.get(1), reports.get(2)))
             state, body, guide = merge.step(state, pair)
             bodies.append(body)
-            search, job = rig_search.step(search, two_views(pair.views))
+            search, job = rig_search.step(search, first_two(pair.views))
             if job is not None:
                 coming.append((body.captured_s + WAIT_S, solved(job)))
             if coming and body.captured_s >= coming[0][0]:

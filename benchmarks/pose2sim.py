@@ -24,10 +24,10 @@ from threadpoolctl import threadpool_limits
 
 from common.body.body import JOINT_NAMES
 from common.body.proportions import body_vector
-from common.bus.messages import Body, Report
+from common.bus.messages import Body, View
 from common.config import config_file
 from common.raster.kernel import draw_body, view_of
-from common.raster.silhouette_report import unpack
+from common.raster.silhouette_report import mask_of
 from common.raster.similarity import Mask
 from common.rig.camera import Rig
 from common.video.clip_facts import whole_rig
@@ -50,7 +50,7 @@ SHOWN: Final = 12
 """Frames on a contact sheet."""
 
 Picture = NDArray[np.uint8]
-Row = tuple[dict[Any, CapturedFrame], dict[int, Report], Body]
+Row = tuple[dict[Any, CapturedFrame], dict[int, View], Body]
 """The frames of an instant, the reports on them and the body that they gave."""
 
 
@@ -125,12 +125,12 @@ def write_settings(data: Path, out: Path, size: str, every: int) -> list[Path]:
     return found
 
 
-def overlay(frame: CapturedFrame, report: Report, body: Body, rig: Rig) -> Picture:
+def overlay(frame: CapturedFrame, report: View, body: Body, rig: Rig) -> Picture:
     """A view: blue the model alone, red the silhouette alone, green both."""
     n = report.viewer - 1
     picture = frame.picture // 2
     height, width = picture.shape[:2]
-    seen = unpack(report)
+    seen = mask_of(report)
     if body.bdp is not None and body.pose:
         pose, view = np.array(body.pose), view_of(rig.cameras[n])
         model = draw_body(body_vector(body.bdp), pose, view, (width, height))
@@ -153,7 +153,7 @@ class Pair(NamedTuple):
 def pair_of(rig: Rig, rows: list[Row]) -> Pair:
     """What a pair has found, of the instants that its rig was shown."""
     outlines = {
-        camera.name: [undistorted(unpack(reports[n]), camera) for _, reports, _ in rows]
+        camera.name: [undistorted(mask_of(reports[n]), camera) for _, reports, _ in rows]
         for n, camera in enumerate(rig.cameras, 1)
     }
     return Pair(rig, outlines, [body for _, _, body in rows])

@@ -25,7 +25,7 @@ from threadpoolctl import threadpool_limits
 
 from common.bus.instant import Instant
 from common.bus.message_codec import decode, encode
-from common.bus.messages import Body, Guide, Report, ViewerNumber
+from common.bus.messages import Body, Guide, View, ViewerNumber
 from common.bus.process import settle
 from common.config.part_settings import PageSettings
 from common.config.settings import Settings
@@ -117,7 +117,7 @@ class Steps:
             frame = CapturedFrame(index, at_s, at_s, pictures[number])
             viewer, report = track.step(self.viewers[number], frame, self.guide)
             self.viewers[number] = viewer
-            reports[number] = decode(encode(report), Report)
+            reports[number] = decode(encode(report), View)
         pair = Instant((reports[1], reports[2]))
         self.integrator, body, guide = merge.step(self.integrator, pair)
         self.guide = decode(encode(guide), Guide)

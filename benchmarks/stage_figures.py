@@ -19,9 +19,9 @@ from threadpoolctl import threadpool_limits
 from animator.skeleton.foot_contact import SIDES, stances
 from animator.skeleton.planted_feet import planted
 from common.body.body import ANGLE_INDEX, JOINT_NAMES, LIMB_ENDS
-from common.bus.messages import Body, Report
+from common.bus.messages import Body, View
 from common.config.settings import Settings
-from common.raster.silhouette_report import unpack
+from common.raster.silhouette_report import mask_of
 from common.video.pictures import Image
 from recognizer.__main__ import SHIPPED, step
 from recognizer.__main__ import init as recognizer_init
@@ -43,7 +43,7 @@ class Seen(NamedTuple):
     """One instant as the stages hand it on."""
 
     pictures: dict[int, Image]
-    reports: dict[int, Report]
+    reports: dict[int, View]
     body: Body
 
 
@@ -67,11 +67,11 @@ def viewer_figure(instant: Seen, out: Path) -> None:
     _write(out, np.concatenate(rows, axis=0))
 
 
-def _viewer_row(picture: Image, report: Report) -> Image:
-    mask = unpack(report)
+def _viewer_row(picture: Image, report: View) -> Image:
+    mask = mask_of(report)
     outline = np.where(mask[..., None], 255, 30).astype(np.uint8).repeat(3, axis=2)
     landmarks = np.clip(picture * 0.6, 0, 255).astype(np.uint8)
-    shown = report.landmarks
+    shown = None if report.person is None else report.person.landmarks
     assert shown is not None
     for (x, y), sure in zip(shown.joints_px, shown.confidence, strict=True):
         colour = (0, round(255 * sure), round(255 * (1 - sure)))

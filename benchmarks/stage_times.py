@@ -20,7 +20,7 @@ from threadpoolctl import threadpool_limits
 
 from common.bus.instant import Instant
 from common.bus.message_codec import decode, encode
-from common.bus.messages import Body, Guide, Report
+from common.bus.messages import Body, Guide, View
 from common.bus.process import settle
 from common.config.settings import Settings
 from common.video.clips import open_clip
@@ -67,7 +67,7 @@ def timed(clip: Path, size: str) -> Iterator[list[float]]:
             steps.viewers[number] = viewer
             reports.append(report)
             at.append(time.thread_time())
-        first, second = (decode(encode(report), Report) for report in reports)
+        first, second = (decode(encode(report), View) for report in reports)
         at.append(time.thread_time())
         steps.integrator, body, guide = merge.step(steps.integrator, Instant((first, second)))
         at.append(time.thread_time())

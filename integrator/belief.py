@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import OTHER_SIDE
-from common.bus.instant import Instant
-from common.bus.messages import Landmarks, Report
+from common.body.observation import Landmarks, Observation
+from common.bus.instant import Seen
 from common.rig.camera import Camera, Rig, project
 from integrator.single.reflection import yaw_deg
 
@@ -37,39 +37,39 @@ performers' frames (docs/measurements.md)."""
 
 
 def is_believed(
-    joints_m: NDArray[np.float64], rig: Rig, instant: Instant, scores: tuple[float, ...]
+    joints_m: NDArray[np.float64], rig: Rig, seen: Seen, scores: tuple[float, ...]
 ) -> bool:
     """Whether what the views show bears a body out: of those whose landmarks are trusted, two.
 
     Args:
         joints_m: (15, 3) world, JOINT_NAMES.
         rig: The cameras.
-        instant: What was heard.
+        seen: The person as each view sees them.
         scores: S of the body in each view.
     """
     views = [
-        (report, camera, score)
-        for report, camera, score in zip(instant.views, rig.cameras, scores, strict=True)
-        if report is not None and report.box is not None
+        (person, camera, score)
+        for person, camera, score in zip(seen, rig.cameras, scores, strict=True)
+        if person is not None
     ]
-    told = [(report, camera) for report, camera, _ in views if _is_trusted(report)]
+    told = [(person, camera) for person, camera, _ in views if _is_trusted(person)]
     if max(scores) < LOST_SCORE and len(told) < 2:
         return False
     if told:
-        near = sum(_astray(joints_m, camera, report.landmarks) <= ASTRAY for report, camera in told)
+        near = sum(_astray(joints_m, camera, person.landmarks) <= ASTRAY for person, camera in told)
         return near >= min(2, len(told)) and not _is_turned_about(joints_m, told)
-    unsure = [report.landmarks for report, _, _ in views if report.landmarks is not None]
+    unsure = [person.landmarks for person, _, _ in views if person.landmarks is not None]
     if len(unsure) < len(views):
         return True
     somebody = max(_sure(landmarks) for landmarks in unsure) >= NOBODY
     return somebody and min(score for _, _, score in views) >= UNTOLD_SCORE
 
 
-def _is_trusted(report: Report) -> bool:
-    if report.landmarks is None:
+def _is_trusted(person: Observation) -> bool:
+    if person.landmarks is None:
         return False
-    sure = report.landmarks.confidence
-    return _sure(report.landmarks) >= TRUSTED and sum(each > SURE for each in sure) >= LEAST
+    sure = person.landmarks.confidence
+    return _sure(person.landmarks) >= TRUSTED and sum(each > SURE for each in sure) >= LEAST
 
 
 def _sure(found: Landmarks) -> float:
@@ -93,15 +93,15 @@ def _astray(joints_m: NDArray[np.float64], camera: Camera, found: Landmarks | No
     return float(off_px[:, off_px.shape[1] // 2].min()) / tall_px
 
 
-def _is_turned_about(joints_m: NDArray[np.float64], told: list[tuple[Report, Camera]]) -> bool:
+def _is_turned_about(joints_m: NDArray[np.float64], told: list[tuple[Observation, Camera]]) -> bool:
     """Whether all views that are sure which way somebody faces see another one than the body's.
 
     One alone takes front for back too often.
     """
     off_deg = [
-        _off_deg(yaw_deg(camera, joints_m), report.landmarks.facing_deg)
-        for report, camera in told
-        if report.landmarks is not None and report.landmarks.facing_confidence > FACES
+        _off_deg(yaw_deg(camera, joints_m), person.landmarks.facing_deg)
+        for person, camera in told
+        if person.landmarks is not None and person.landmarks.facing_confidence > FACES
     ]
     return len(off_deg) > 1 and min(off_deg) > TURNED_DEG
 

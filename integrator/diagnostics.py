@@ -3,7 +3,7 @@
 from typing import Final, NamedTuple
 
 from common.bus.instant import Instant
-from common.bus.messages import CameraFault, Report
+from common.bus.messages import CameraFault, View
 from integrator import merge_state
 
 DOUBTED: Final = 0.5
@@ -33,8 +33,8 @@ def step(state: State, instant: Instant) -> State:
     views = instant.views
     if not state.seen:
         state = State((0,) * len(views), (0,) * len(views), (Useless(),) * len(views))
-    detected = [report is not None and report.box is not None for report in views]
-    partly = [report is not None and report.cut for report in views]
+    detected = [view is not None and view.person is not None for view in views]
+    partly = [seen is not None and seen.cut for seen in instant.detections]
     return State(
         tuple(before + now for before, now in zip(state.seen, detected, strict=True)),
         tuple(before + now for before, now in zip(state.cut, partly, strict=True)),
@@ -42,7 +42,7 @@ def step(state: State, instant: Instant) -> State:
     )
 
 
-def _with(own: Useless, report: Report | None) -> Useless:
+def _with(own: Useless, report: View | None) -> Useless:
     if report is None or not report.fault:
         return own
     since_s = own.since_s if own.frames else report.captured_s

@@ -6,13 +6,14 @@ import msgspec
 
 from common.body.body import JOINT_NAMES, POSE_INDEX, rest_pose
 from common.body.kinematics import joints
+from common.body.observation import Landmarks
 from common.body.proportions import body_vector, thesis_bdp
 from common.bus.instant import Instant
-from common.bus.messages import Landmarks, Report, ViewerNumber
+from common.bus.messages import View, ViewerNumber
 from common.config.settings import Settings
 from common.method import METHODS
 from common.raster.kernel import draw_body, view_of
-from common.raster.silhouette_report import pack, silhouette_report, unpack
+from common.raster.silhouette_report import pack, silhouette_view, unpack, with_person
 from common.rig.camera import Rig, paper_rig, project
 from integrator import merge, merge_state
 from integrator.fit import visual_hull
@@ -32,29 +33,31 @@ def warm_up(settings: Settings, size: tuple[int, int]) -> None:
     for rig in (known, None):
         state = merge_state.init(rig, 1.0, settings, METHODS[settings.mode])
         for index in range(4):
-            first, second = (_report(viewer, index, size, known) for viewer in VIEWERS)
+            first, second = (_view(viewer, index, size, known) for viewer in VIEWERS)
             state, _, _ = merge.step(state, Instant((first, second if index < 3 else None)))
-    _clear(known, (_report(1, 0, size, known), _report(2, 0, size, known)))
+    _clear(known, Instant((_view(1, 0, size, known), _view(2, 0, size, known))))
 
 
-def _clear(rig: Rig, seen: tuple[Report, Report]) -> None:
+def _clear(rig: Rig, instant: Instant) -> None:
     """Clear silhouettes, of which one has clutter."""
-    clutter = unpack(seen[0])
+    first, second = instant.detections
+    assert first is not None
+    clutter = unpack(first)
     clutter[: len(clutter) // 20, : len(clutter) // 20] = True
-    visual_hull.cleaned(rig, (msgspec.structs.replace(seen[0], silhouette=pack(clutter)), seen[1]))
+    visual_hull.cleaned(rig, (msgspec.structs.replace(first, silhouette=pack(clutter)), second))
 
 
 def _rig(size: tuple[int, int]) -> Rig:
     return paper_rig(size, (1.25 * size[0],) * 2, (4.5, 4.5))
 
 
-def _report(viewer: ViewerNumber, index: int, size: tuple[int, int], rig: Rig) -> Report:
+def _view(viewer: ViewerNumber, index: int, size: tuple[int, int], rig: Rig) -> View:
     pose = rest_pose()
     pose[POSE_INDEX["y"]] = 1.0
     camera, body = rig.cameras[viewer - 1], body_vector(thesis_bdp(1.75))
-    report = silhouette_report(
-        viewer, draw_body(body, pose, view_of(camera), size), index, float(index)
-    )
+    mask = draw_body(body, pose, view_of(camera), size)
+    view = silhouette_view(viewer, mask, index, float(index))
     places_px = project(camera, joints(body, pose)).tolist()
     shown = Landmarks(tuple((x, y) for x, y in places_px), (0.9,) * len(JOINT_NAMES))
-    return msgspec.structs.replace(report, landmarks=shown)
+    assert view.person is not None
+    return with_person(view, msgspec.structs.replace(view.person, landmarks=shown))

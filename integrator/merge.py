@@ -5,10 +5,11 @@ from typing import NamedTuple
 from calibration.gate import moved_cameras, rig_agreement, silhouette_motion
 from common.body.body import ANGLE_NAMES, ANGLES_IN_POSE, Vector
 from common.body.kinematics import ALL_LIMBS
+from common.body.observation import Observation
 from common.body.proportions import body_vector
 from common.body.stick_body import ADULT, THESIS
 from common.bus.instant import Instant, Seen
-from common.bus.messages import Body, Guide, Report
+from common.bus.messages import Body, Guide
 from common.raster.bits import count
 from common.raster.kernel import match, view_of
 from common.raster.silhouette_report import words_of
@@ -67,7 +68,8 @@ def step(
         stands=moved_cameras.step(state.stands, instant),
         motion=silhouette_motion.step(state.motion, instant),
     )
-    seen = undistorted_instant(state.rig, instant).detections
+    shown = undistorted_instant(state.rig, instant)
+    seen = shown.detections
     state = _with_rig(state, seen)
     if not any(seen) or state.rig is None:
         state = _without_pose(state)
@@ -75,7 +77,7 @@ def step(
     rig = undistorted_rig(state.rig)
     state = _with_pair(state, best_pair(state.pair, rig, seen))
     now = Sighting(rig, seen, state.pair or (0, 0), dt_s, annotations)
-    state = state._replace(agreement=rig_agreement.step(state.agreement, *now.two))
+    state = _with_agreement(state, instant, now)
     state, settled_at = _with_opening(state, now)
     state, now = _with_pose(state, now, settled_at)
     state = _with_shape(state, now)
@@ -125,7 +127,7 @@ def _number(state: State, instant: Instant) -> int:
 
 def _with_rig(state: State, seen: Seen) -> State:
     """The rig, assumed at the first sight of a whole person where none is calibrated."""
-    whole = [report for report in seen if report is not None and not report.cut]
+    whole = [person for person in seen if person is not None and not person.cut]
     if state.rig is not None or not whole:
         return state
     stature_m = state.settings.body.stature_m
@@ -143,6 +145,15 @@ def _with_pair(state: State, pair: Places) -> State:
         return state._replace(pair=pair)
     found = None if state.found is None else state.found._replace(memory=None)
     return state._replace(pair=pair, found=found, agreement=rig_agreement.State())
+
+
+def _with_agreement(state: State, instant: Instant, now: Sighting) -> State:
+    """The state with what the pair shows of whether the rig is right."""
+    first = instant.views[now.pair[0]]
+    if first is None:
+        return state
+    agreement = rig_agreement.step(state.agreement, *now.two, first.captured_s)
+    return state._replace(agreement=agreement)
 
 
 def _with_opening(state: State, now: Sighting) -> tuple[State, Vector | None]:
@@ -181,13 +192,14 @@ def _lone(state: State, now: Sighting) -> Posed:
     assert state.rig is not None
     rig, seen = two_of(state.rig, now.seen, now.pair)
     place = 0 if seen[0] is not None else 1
-    report = seen[place]
-    assert report is not None
+    person = seen[place]
+    assert person is not None
     method, dt_s, annotations = state.method, now.dt_s, now.annotations
     man = THESIS if method.stick_lifting else ADULT
-    sight = Sight(method, place, rig, report, man, bdp, state.pose, dt_s, annotations)
+    number = now.pair[place] + 1
+    sight = Sight(method, place, rig, person, man, bdp, state.pose, dt_s, annotations, number)
     alone = before.alone if before is not None else None
-    if alone is None or alone.number != report.viewer:
+    if alone is None or alone.number != number:
         alone = single_view.begun(sight, None if before is None else before.joints_m, alone)
     found = single_view.step(before.memory if before is not None else None, alone, sight)
     body = found.body
@@ -228,22 +240,22 @@ def _scores(state: State, now: Sighting) -> tuple[float, ...]:
     found = state.found
     assert found is not None
     if found.alone is not None:
-        own = next(n for n, report in enumerate(now.seen) if report is not None)
+        own = next(n for n, person in enumerate(now.seen) if person is not None)
         return tuple(found.alone.score if n == own else 0.0 for n in range(len(now.seen)))
     assert state.opening.bdp is not None
     body = body_vector(state.opening.bdp)
     return tuple(
-        _score(body, found.pose, camera, report)
-        for camera, report in zip(now.rig.cameras, now.seen, strict=True)
+        _score(body, found.pose, camera, person)
+        for camera, person in zip(now.rig.cameras, now.seen, strict=True)
     )
 
 
-def _score(body: Vector, pose: Vector, camera: Camera, report: Report | None) -> float:
+def _score(body: Vector, pose: Vector, camera: Camera, person: Observation | None) -> float:
     """S of the whole body in one picture, true perspective; 0 where that view has nobody."""
-    if report is None:
+    if person is None:
         return 0.0
-    seen, view = words_of(report), view_of(camera)
-    return float(match(body, pose, view, ALL_LIMBS, report.width, seen, count(seen)))
+    seen, view = words_of(person), view_of(camera)
+    return float(match(body, pose, view, ALL_LIMBS, person.width, seen, count(seen)))
 
 
 def _smoothed(state: State, dt_s: float) -> tuple[State, Vector]:

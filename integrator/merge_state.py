@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 from calibration.gate import moved_cameras, rig_agreement, silhouette_motion
 from calibration.gate.moved_cameras import MovedCameras
 from common.body.body import ANGLE_NAMES, Vector
-from common.bus.messages import Facing, ScaleSource
+from common.body.observation import Facing
+from common.bus.messages import ScaleSource
 from common.config.settings import Settings
 from common.method import Method
 from common.rig.camera import Rig

@@ -6,9 +6,9 @@ import msgspec
 import numpy as np
 
 from common.body.body import Bdp, Vector, body_of_lengths
+from common.body.observation import Measure, Observation
 from common.body.proportions import thesis_bdp
 from common.bus.instant import Seen
-from common.bus.messages import Measure, Report
 from common.method import Method
 from common.rig.camera import Rig
 from integrator.prior_body import prior
@@ -23,7 +23,7 @@ class Sample(NamedTuple):
     """A pose as it was found, and what was seen then."""
 
     pose: Vector
-    seen: tuple[Report, Report]
+    seen: tuple[Observation, Observation]
 
 
 class Opening(NamedTuple):
@@ -70,7 +70,7 @@ def step(
     Args:
         opening: What is known so far.
         rig: Two cameras.
-        seen: Reports with a body in them.
+        seen: The person as each view sees them.
         due: How many accepted frames make the body (their median).
         method: What is done beyond the print.
     """
@@ -78,7 +78,7 @@ def step(
         opening = opening._replace(bdp=prior(rig, seen))
     if opening.measured:
         return opening, None
-    front, side = (None if report is None else report.measure for report in seen)
+    front, side = (None if person is None else person.measure for person in seen)
     if front is None or side is None or not _shows_both(rig, front, side):
         broken_off = opening.refused + 1 >= due
         return opening._replace(

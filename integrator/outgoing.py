@@ -11,9 +11,10 @@ from calibration.gate import silhouette_motion
 from common.body.body import ANGLES_IN_POSE, JOINT_NAMES, Vector, rest_pose
 from common.body.extremities import extremities
 from common.body.kinematics import joints
+from common.body.observation import Observation, Pixel
 from common.body.proportions import body_vector, stature
-from common.bus.instant import Instant, Seen, two_views
-from common.bus.messages import Agreement, Body, Guide, Pixel, Point, Report, Status, Views
+from common.bus.instant import Instant, Seen
+from common.bus.messages import Agreement, Body, Guide, Point, Status, Views
 from common.npz_file import Facts
 from common.rig.camera import project
 from common.rig.upright_camera import as_filed
@@ -66,13 +67,13 @@ def body_of(
         **_moment(state, instant),
         **posed,
         status=status,
-        views=_views(instant),
-        seen=tuple(report is not None for report in instant.detections),
+        views=_views(instant.detections),
+        seen=tuple(person is not None for person in instant.detections),
         confidence=tuple(confidence.tolist()),
         score=scores,
         facing=found.facing,
         bdp=bdp,
-        matches=sum(_matches(report) for report in instant.views if report is not None),
+        matches=sum(_matches(seen) for seen in instant.detections if seen is not None),
         lifting=None if found.alone is None else found.alone.lifting,
         scale_source=state.scale_source,
         calibration=state.calibration,
@@ -95,7 +96,7 @@ def weighed(
     assert found is not None
     assert state.rig is not None
     places_m = _places_m(state, found.pose)
-    if annotations.joints_px or is_believed(places_m, state.rig, instant, scores):
+    if annotations.joints_px or is_believed(places_m, state.rig, instant.detections, scores):
         return state._replace(doubted=0, ever_confirmed=True)
     lost = _lost_frames(state)
     least = lost if found.alone is not None and not state.ever_confirmed else 1
@@ -136,18 +137,18 @@ def _extremities(state: State, seen: Seen, places_m: Vector, believed: float) ->
     }
 
 
-def _matches(report: Report) -> int:
-    return report.matches + (0 if report.fit is None else report.fit.matches)
+def _matches(seen: Observation) -> int:
+    return sum(found.matches for found in (seen.search, seen.stick) if found is not None)
 
 
 def _outside(instant: Instant, pixels: tuple[NDArray[np.float64], ...]) -> NDArray[np.bool_]:
     """Which joints the only picture of somebody does not show, (15,): they are guessed."""
-    seen = [report for report in instant.detections if report is not None]
-    if len(seen) != 1 or not seen[0].cut:
+    seen = [(n, one) for n, one in enumerate(instant.detections) if one is not None]
+    if len(seen) != 1 or not seen[0][1].cut:
         return np.zeros(len(JOINT_NAMES), np.bool_)
-    (report,) = seen
-    places_px = pixels[report.viewer - 1]
-    shown = (places_px >= 0) & (places_px <= (report.width, report.height))
+    ((own, person),) = seen
+    places_px = pixels[own]
+    shown = (places_px >= 0) & (places_px <= (person.width, person.height))
     return np.logical_not(shown.all(axis=1))
 
 
@@ -184,10 +185,10 @@ def guide_of(state: State, instant: Instant, settled_now: bool) -> Guide:
     place = found.pose[:3]
     measured_at = np.array(known.measured_at_m) if known.measured else place
     roots = list(pixels_of(rig, place))
-    for n, report in enumerate(instant.views):
+    for n, seen in enumerate(instant.detections):
         own = not (state.method.shared_start or settled_now)
-        if own and report is not None and report.root_px is not None:
-            roots[n] = report.root_px
+        if own and seen is not None and seen.search is not None:
+            roots[n] = seen.search.root_px
     upright = pixels_of(rig, np.array([place[0], measured_at[1], place[2]]))
     return Guide(
         **_moment(state, instant),
@@ -269,11 +270,12 @@ def _status(state: State) -> Status:
     return "measuring" if state.opening.under_way else "tracking"
 
 
-def _views(instant: Instant) -> Views:
-    names: dict[tuple[bool, bool], Views] = {(True, True): "both", (True, False): "1"}
-    names |= {(False, True): "2", (False, False): "none"}
-    first, second = two_views(instant.detections)
-    return names[first is not None, second is not None]
+def _views(seen: Seen) -> Views:
+    """Which views show the person: of two cameras "both", of more their numbers."""
+    numbers = [str(n) for n, person in enumerate(seen, start=1) if person is not None]
+    if len(seen) == len(numbers) == 2:
+        return "both"
+    return "+".join(numbers) or "none"
 
 
 def _or_unseen(scales: tuple[float, ...]) -> tuple[float, ...]:

@@ -3,7 +3,7 @@
 from typing import Final, NamedTuple, Protocol, TypeVar
 
 from common.bus.instant import Instant, instant_of
-from common.bus.messages import Report, ViewerNumber
+from common.bus.messages import View, ViewerNumber
 
 QUEUE: Final = 128
 """How many reports of one viewer wait for the others: eight seconds at 15 frames a second, after
@@ -31,7 +31,7 @@ class State(NamedTuple):
     """What waits for the others of its instant, by view in the rig's order, and what was lost."""
 
     period_s: float
-    waiting: tuple[tuple[Report, ...], ...]
+    waiting: tuple[tuple[View, ...], ...]
     """Reports of each viewer, oldest first."""
     over: tuple[bool, ...]
     """Viewers that say nothing more: nobody waits for them."""
@@ -51,7 +51,7 @@ class State(NamedTuple):
 class _Due(NamedTuple):
     """What goes out next."""
 
-    reports: tuple[Report, ...]
+    reports: tuple[View, ...]
     """Of one instant, oldest first."""
     middle_s: float
     """The instant: each of them was taken within half a period of it."""
@@ -77,7 +77,7 @@ def init(period_s: float, viewers: tuple[ViewerNumber, ...] = (1, 2), cameras: i
     )
 
 
-def step(state: State, report: Report) -> tuple[State, list[Instant]]:
+def step(state: State, report: View) -> tuple[State, list[Instant]]:
     """Take a report in; give out what is complete now, in the order of time.
 
     An instant goes out when each view either has its frame of it there, or can have none any more:
@@ -212,7 +212,7 @@ def _without_late(state: State) -> State:
 def _taken(state: State, due: _Due) -> tuple[State, Instant]:
     """An instant goes out: what was taken before its newest report, should it still come, is late,
     and so is a frame of the instant where its viewer has said nothing."""
-    views: dict[int, Report] = {report.viewer: report for report in due.reports}
+    views: dict[int, View] = {report.viewer: report for report in due.reports}
     newest_s = due.reports[-1].captured_s
     waiting, passed_s = list(state.waiting), [newest_s] * len(state.waiting)
     for own, queue in enumerate(state.waiting):

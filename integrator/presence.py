@@ -3,7 +3,7 @@
 from typing import Final, NamedTuple
 
 from common.bus.control_messages import Ended
-from common.bus.messages import CameraFault, Report, ViewerNumber
+from common.bus.messages import CameraFault, View, ViewerNumber
 from common.bus.rate import silent
 from integrator.pairing import with_item
 
@@ -56,7 +56,7 @@ def init(period_s: float, viewers: tuple[ViewerNumber, ...], cameras: int = 2) -
     )
 
 
-def heard(state: State, report: Report, now_s: float) -> State:
+def heard(state: State, report: View, now_s: float) -> State:
     """A viewer reports: it is there, whatever the bus says."""
     own = report.viewer - 1
     if state.began_s == NEVER_S:

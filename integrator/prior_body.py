@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import Bdp, Vector
+from common.body.observation import Observation, Pixel
 from common.body.proportions import thesis_bdp
 from common.bus.instant import Seen
-from common.bus.messages import Pixel, Report
 from common.raster.silhouette_report import unpack
 from common.rig.camera import Camera, Rig, project, px_per_m
 from integrator.proposal.silhouette_window import ABOVE_M, standing_m
@@ -31,10 +31,10 @@ def prior(rig: Rig, seen: Seen) -> Bdp:
     place = _place(rig, seen)
     heights = [
         height
-        for report, camera in zip(seen, rig.cameras, strict=True)
-        if report is not None
-        and not report.cut
-        and np.isfinite(height := _height_m(report, camera, place))
+        for person, camera in zip(seen, rig.cameras, strict=True)
+        if person is not None
+        and not person.cut
+        and np.isfinite(height := _height_m(person, camera, place))
     ]
     low, high = STATURES_M
     if None not in seen and low <= (crown := _crown_m(rig, seen, place)) <= high:
@@ -44,15 +44,15 @@ def prior(rig: Rig, seen: Seen) -> Bdp:
 
 def _place(rig: Rig, seen: Seen) -> Vector:
     """Where the body is, (3,) world."""
-    for report, camera in zip(seen, rig.cameras, strict=True):
-        if None in seen and report is not None:
-            return standing_m(unpack(report), camera)
+    for person, camera in zip(seen, rig.cameras, strict=True):
+        if None in seen and person is not None:
+            return standing_m(unpack(person), camera)
     return place_of(rig, roots_of(seen), np.zeros(3), 0)
 
 
-def _height_m(report: Report, camera: Camera, place: Vector) -> float:
+def _height_m(person: Observation, camera: Camera, place: Vector) -> float:
     """How far an outline reaches along what is upright in its picture, metres."""
-    along, _ = _upwards(report, camera, place)
+    along, _ = _upwards(person, camera, place)
     return float((along.max() + 1.0 - along.min()) / px_per_m(camera, place))
 
 
@@ -62,20 +62,20 @@ def _crown_m(rig: Rig, seen: Seen, place: Vector) -> float:
     What touches the border of a picture may go on beyond it.
     """
     tops: list[Pixel] = []
-    for report, camera in zip(seen, rig.cameras, strict=True):
-        assert report is not None
-        along, pixels = _upwards(report, camera, place)
+    for person, camera in zip(seen, rig.cameras, strict=True):
+        assert person is not None
+        along, pixels = _upwards(person, camera, place)
         column, row = pixels[along.argmax()]
-        if not (0 < column < report.width - 1 and 0 < row < report.height - 1):
+        if not (0 < column < person.width - 1 and 0 < row < person.height - 1):
             return np.inf
         tops.append((float(column) + 0.5, float(row) + 0.5))
     found = triangulate((rig.cameras[0], rig.cameras[1]), (tops[0], tops[1]))
     return float(found[1]) if np.isfinite(found).all() else np.inf
 
 
-def _upwards(report: Report, camera: Camera, place: Vector) -> tuple[Vector, NDArray[np.intp]]:
+def _upwards(person: Observation, camera: Camera, place: Vector) -> tuple[Vector, NDArray[np.intp]]:
     """How far up each pixel of an outline is in its picture, (n,), and the pixels, (n, 2)."""
     at, above = project(camera, np.stack([place, place + ABOVE_M * UP_AXIS]))
-    rows, columns = np.nonzero(unpack(report))
+    rows, columns = np.nonzero(unpack(person))
     pixels = np.stack([columns, rows], axis=1)
     return pixels @ (above - at) / np.linalg.norm(above - at), pixels

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final, Generic, TypeVar, overload
 
 from common.body.body import ANGLE_NAMES, JOINT_NAMES, POSE_INDEX
-from common.bus.messages import Body, Message, Posture, Report, ViewerNumber
+from common.bus.messages import Body, Message, Posture, View, ViewerNumber
 from common.config.config_file import load
 from common.config.part_settings import BusSettings
 from common.config.settings import Settings
@@ -23,8 +23,8 @@ __all__ = [
     "POSE_INDEX",
     "Body",
     "Posture",
-    "Report",
     "Subscription",
+    "View",
     "load_run",
     "subscribe",
     "track",
@@ -124,7 +124,7 @@ def subscribe(
     Args:
         endpoint: Where the integrator listens, `[bus] endpoint` of the run's settings.
         room: `room` of the run's settings.
-        kind: Which message: Body, Posture or Report.
+        kind: Which message: Body, Posture or View.
         wait_s: How long to wait for the run to begin.
         keys: Folder with ca.pem, client.pem and client.key, where the run has keys; the endpoint is
             tls/HOST:PORT then.

@@ -6,7 +6,7 @@ from typing import Final
 import cv2
 import numpy as np
 
-from common.bus.messages import Pixel
+from common.body.observation import Pixel
 from common.rig.camera import Camera, paper_rig, project
 
 SIZE: Final = (640, 480)

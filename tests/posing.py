@@ -1,8 +1,9 @@
 """What the tests of the tracking stages share: bodies, and how a viewer sees them."""
 
 from common.body.body import POSE_INDEX, Vector, rest_pose
+from common.body.observation import Box
 from common.body.proportions import body_vector, thesis_bdp
-from common.bus.messages import Box, ViewerNumber
+from common.bus.messages import ViewerNumber
 from common.raster.kernel import draw_body
 from common.raster.silhouette_report import box_of
 from common.raster.similarity import Mask

@@ -7,10 +7,11 @@ import numpy as np
 from posing import posed
 
 from common.body.body import Vector
+from common.body.observation import Observation, Search
 from common.body.proportions import body_vector, thesis_bdp
-from common.bus.messages import Report, ViewerNumber
+from common.bus.messages import View, ViewerNumber
 from common.raster.kernel import draw_body, view_of
-from common.raster.silhouette_report import silhouette_report
+from common.raster.silhouette_report import people_of, silhouette_view, with_person
 from common.raster.similarity import Mask
 from common.rig.camera import Camera, Rig, as_matrix, as_row
 
@@ -63,6 +64,12 @@ def outlines(pose: Vector) -> tuple[Mask, Mask]:
     return first, second
 
 
-def told(viewer: ViewerNumber, mask: Mask) -> Report:
-    """A report of an outline."""
-    return msgspec.structs.replace(silhouette_report(viewer, mask), root_px=(80.0, 120.0))
+def person_in(mask: Mask) -> Observation:
+    """The person of an outline, with a navel that is not in its middle."""
+    (person,) = people_of(mask)
+    return msgspec.structs.replace(person, search=Search((80.0, 120.0), {}, False, 0.0, 0))
+
+
+def told(viewer: ViewerNumber, mask: Mask) -> View:
+    """What a viewer says of an outline."""
+    return with_person(silhouette_view(viewer, mask), person_in(mask))

@@ -16,8 +16,8 @@ from common.body.extremities import extremities
 from common.body.kinematics import joints
 from common.body.proportions import body_vector, thesis_bdp
 from common.bus.control_messages import Pulse
-from common.bus.messages import Body, Posture, Report, ViewerNumber
-from common.raster.silhouette_report import pack
+from common.bus.messages import Body, Posture, ViewerNumber
+from common.raster.silhouette_report import silhouette_view
 from common.rig.camera import Camera, paper_rig, project
 
 RATE_HZ = 15
@@ -56,16 +56,7 @@ def snapshot_at(frame: int) -> Snapshot:
             bdp=BDP,
         ),
         reports={
-            n: Report(
-                frame=frame,
-                captured_s=seconds,
-                clock_s=seconds,
-                viewer=n,
-                width=160,
-                height=120,
-                silhouette=pack(mask),
-                box=None,
-            )
+            n: silhouette_view(n, mask, frame, seconds)
             for n, mask in zip(VIEWERS, masks, strict=True)
         },
         posture=Posture(

@@ -1,7 +1,7 @@
 """A person in the paper's rig, seen by two viewers whose silhouettes are exact."""
 
 from collections.abc import Iterable, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import msgspec
 import numpy as np
@@ -9,13 +9,14 @@ import pytest
 from posing import posed
 
 from common.body.body import Bdp, Vector
+from common.body.observation import Box, Observation, Search
 from common.body.proportions import body_vector, thesis_bdp
 from common.bus.instant import Instant
-from common.bus.messages import Body, Box, Guide, Report, ViewerNumber
+from common.bus.messages import Body, Guide, View, ViewerNumber
 from common.config.settings import Settings
 from common.method import METHODS, Method
 from common.raster.kernel import draw_body, view_of
-from common.raster.silhouette_report import box_of, pack
+from common.raster.silhouette_report import box_of, pack, with_person
 from common.raster.similarity import Mask
 from common.rig.camera import Rig, paper_rig
 from common.video.pictures import Image
@@ -85,7 +86,7 @@ def exact(monkeypatch: pytest.MonkeyPatch) -> None:
 class Told(NamedTuple):
     """What came of one instant."""
 
-    reports: tuple[Report | None, Report | None]
+    reports: tuple[View | None, View | None]
     body: Body
     guide: Guide
 
@@ -113,7 +114,7 @@ class Stage:
 
     def see(self, masks: tuple[Mask | None, Mask | None]) -> Told:
         """One instant; None where a viewer says nothing."""
-        reports: list[Report | None] = [None, None]
+        reports: list[View | None] = [None, None]
         for n, viewer in self.viewers.items():
             mask = masks[n - 1]
             if mask is None:
@@ -134,15 +135,47 @@ def between(first: Vector, last: Vector, frames: int) -> list[Vector]:
     return [first + (last - first) * (i + 1) / frames for i in range(frames)]
 
 
-def report(viewer: ViewerNumber, mask: Mask | None = None, **said: object) -> Report:
-    """A report of a silhouette, with anything else that it may say."""
+SEARCHED: dict[str, Any] = {
+    "root_px": (0.0, 0.0),
+    "angles_deg": {},
+    "squatting": False,
+    "score": 0.0,
+    "matches": 0,
+}
+
+
+def observation(mask: Mask | None = None, **said: Any) -> Observation:
+    """A person with a silhouette, and anything else that may be said of them, of the search too."""
     seen = NOBODY if mask is None else mask
-    box: Box | None = box_of(seen)
-    given = {"frame": 0, "captured_s": 0.0, "clock_s": 0.0, "box": box, **said}
-    return Report(
+    search = {name: said.pop(name) for name in SEARCHED if name in said}
+    given = {"box": box_of(seen) or Box(0, 0, 0, 0), "area_px": 0, **said}
+    if search:
+        given["search"] = Search(**SEARCHED | search)
+    height, width = seen.shape
+    return Observation(width=width, height=height, silhouette=pack(seen), **given)
+
+
+def report(viewer: ViewerNumber, mask: Mask | None = None, **said: Any) -> View:
+    """What a viewer says of a silhouette, with anything else that it may say of it or the frame."""
+    seen = NOBODY if mask is None else mask
+    names = [*Observation.__struct_fields__, *SEARCHED]
+    person = {name: said.pop(name) for name in names if name in said}
+    given = {"frame": 0, "captured_s": 0.0, "clock_s": 0.0, **said}
+    return View(
         viewer=viewer,
         width=seen.shape[1],
         height=seen.shape[0],
-        silhouette=pack(seen),
-        **given,  # type: ignore[arg-type]
+        people=(observation(seen, **person),) if seen.any() or "box" in person else (),
+        **given,
     )
+
+
+def person_of(view: View) -> Observation:
+    """The person whom a view shows."""
+    assert view.person is not None
+    return view.person
+
+
+def changed(view: View, **said: Any) -> View:
+    """The view with other things said of its person."""
+    return with_person(view, msgspec.structs.replace(person_of(view), **said))

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from common.bus.messages import Facing
+from common.body.observation import Facing
 from integrator.paper.arbiter import Sight, arbitrate
 
 FLIPPED: dict[Facing, Facing] = {"facade": "flank", "flank": "facade"}

@@ -1,18 +1,17 @@
 """The assumed rig, held against a pinhole: who stands there is as high as was assumed."""
 
-import msgspec
 import numpy as np
 import pytest
-from staging import report
+from staging import observation
 
-from common.bus.messages import Box, Report
+from common.body.observation import Box, Observation
 from common.rig.camera import as_paper_rig, project
 from integrator.rig.assumed_rig import FOCAL_SHARE, assumed_rig
 
 
-def standing_person(viewer: int, top: int, bottom: int) -> Report:
+def standing_person(viewer: int, top: int, bottom: int) -> Observation:
 
-    return msgspec.structs.replace(report(viewer), box=Box(70, 90, top, bottom))
+    return observation(box=Box(70, 90, top, bottom))
 
 
 @pytest.mark.parametrize("stature_m", [1.5, 1.75])

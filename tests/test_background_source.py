@@ -11,7 +11,7 @@ import pytest
 from spoiling import Film, copied, film_of, refilmed, write_film
 
 from common.body.body import JOINT_NAMES
-from common.bus.messages import Landmarks
+from common.body.observation import Landmarks
 from common.config.part_settings import CameraSettings, SilhouetteSettings
 from common.config.settings import Settings
 from common.video.clip_facts import ClipView

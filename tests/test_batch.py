@@ -13,7 +13,7 @@ from spoiling import copied, refilmed
 from staging import RIG, report
 
 from common.body.proportions import thesis_bdp
-from common.bus.messages import Body, Report, ViewerNumber
+from common.bus.messages import Body, View, ViewerNumber
 from common.config.settings import Settings
 from common.video.clip_facts import Clip, ClipView, Meta
 from common.video.pictures import Undecodable
@@ -81,7 +81,7 @@ class Tracker:
         self.asked: list[tuple[Any, ...]] = []
         self.fails: dict[str, Exception] = {}
         self.facts: dict[str, Any] = {"warnings": ["it is dark"], "scale_source": "calibrated"}
-        self.said: list[Report | Body] = []
+        self.said: list[View | Body] = []
         self.watched: list[bool] = []
         monkeypatch.setattr(batch, "track_clip", self)
         monkeypatch.setattr(batch, "measured_before", lambda _: MEASURED)
@@ -96,7 +96,7 @@ class Tracker:
             raise self.fails[name]
         course.tell(0.5)
         bodies = [one for one in self.said if isinstance(one, Body)]
-        reports = [one for one in self.said if isinstance(one, Report)]
+        reports = [one for one in self.said if isinstance(one, View)]
         if watch and self.said:
             watch.each({}, {2: reports[0], 1: reports[0]}, bodies[0])
             watch.begin()

@@ -6,9 +6,9 @@ import pytest
 from staging import RIG, standing
 
 from common.body.kinematics import joints
+from common.body.observation import Box, Landmarks, Observation
 from common.body.proportions import body_vector, thesis_bdp
-from common.bus.instant import Instant
-from common.bus.messages import Box, Landmarks, Report
+from common.bus.instant import TwoSeen
 from common.rig.camera import project
 from integrator.belief import ASTRAY, FACES, _astray, _is_turned_about, is_believed
 from integrator.single.reflection import yaw_deg
@@ -17,7 +17,7 @@ BODY = np.asarray(joints(body_vector(thesis_bdp(1.75)), standing()))
 FITS = (0.7, 0.7)
 
 
-def report(n: int, joints_m: np.ndarray, confidence: float = 0.8) -> Report:
+def report(n: int, joints_m: np.ndarray, confidence: float = 0.8) -> Observation:
     """What a view tells whose picture shows these joints."""
     camera = RIG.cameras[n]
     seen = Landmarks(
@@ -27,14 +27,11 @@ def report(n: int, joints_m: np.ndarray, confidence: float = 0.8) -> Report:
         0.95,
     )
     box = Box(left=60, right=100, top=20, bottom=110)
-    return Report(
-        frame=0, captured_s=0.0, clock_s=0.0, viewer=1 if n == 0 else 2, width=160, height=120,
-        silhouette=b"", box=box, landmarks=seen,
-    )  # fmt: skip
+    return Observation(width=160, height=120, silhouette=b"", box=box, area_px=0, landmarks=seen)
 
 
-def pair(joints_m: np.ndarray, confidence: float = 0.8) -> Instant:
-    return Instant((report(0, joints_m, confidence), report(1, joints_m, confidence)))
+def pair(joints_m: np.ndarray, confidence: float = 0.8) -> TwoSeen:
+    return (report(0, joints_m, confidence), report(1, joints_m, confidence))
 
 
 def moved(x_m: float, z_m: float) -> np.ndarray:
@@ -63,7 +60,7 @@ def test_a_body_beside_its_landmarks_is_not() -> None:
 
 
 def test_one_view_that_sees_it_elsewhere_is_enough() -> None:
-    seen = Instant((report(0, BODY), report(1, moved(0.0, 0.6))))
+    seen = (report(0, BODY), report(1, moved(0.0, 0.6)))
     assert not is_believed(BODY, RIG, seen, FITS)
 
 
@@ -80,15 +77,15 @@ def test_where_landmarks_are_unsure_both_views_must_fit() -> None:
 
 def test_without_landmarks_the_better_view_speaks() -> None:
     first, second = (msgspec.structs.replace(report(n, BODY), landmarks=None) for n in (0, 1))
-    assert is_believed(BODY, RIG, Instant((first, second)), (0.4, 0.1))
-    assert not is_believed(BODY, RIG, Instant((first, second)), (0.3, 0.3))
+    assert is_believed(BODY, RIG, (first, second), (0.4, 0.1))
+    assert not is_believed(BODY, RIG, (first, second), (0.3, 0.3))
 
 
 def test_a_body_that_both_views_landmarks_bear_out_needs_no_outline() -> None:
     """Clothes of the wall's colour leave rags of it; one view's word alone is not enough."""
     rags = (0.25, 0.25)
     assert is_believed(BODY, RIG, pair(BODY), rags)
-    assert not is_believed(BODY, RIG, Instant((report(0, BODY), report(1, BODY, 0.4))), rags)
+    assert not is_believed(BODY, RIG, (report(0, BODY), report(1, BODY, 0.4)), rags)
     assert not is_believed(moved(0.6, 0.0), RIG, pair(BODY), rags)
 
 
@@ -97,7 +94,7 @@ def test_a_body_that_no_view_shows_anybody_of_is_not_believed_however_it_fits() 
 
 
 def test_a_body_of_whom_one_view_shows_a_little_is_believed_where_it_fits() -> None:
-    seen = Instant((report(0, BODY, 0.15), report(1, BODY, 0.35)))
+    seen = (report(0, BODY, 0.15), report(1, BODY, 0.35))
     assert is_believed(BODY, RIG, seen, FITS)
 
 
@@ -108,7 +105,7 @@ def test_a_body_is_astray_by_how_tall_it_is_in_the_picture(share: float) -> None
     tall_px = float(np.linalg.norm(np.ptp(joints_px, axis=0)))
     seen_px = joints_px.copy()
     seen_px[:8, 1] += share * ASTRAY * tall_px
-    first, second = pair(BODY).views
+    first, second = pair(BODY)
     assert first is not None
     assert first.landmarks is not None
     beside = msgspec.structs.replace(
@@ -119,14 +116,12 @@ def test_a_body_is_astray_by_how_tall_it_is_in_the_picture(share: float) -> None
     )
     found = _astray(BODY, RIG.cameras[0], beside.landmarks)
     assert found == pytest.approx(share * ASTRAY, rel=1e-6)
-    assert is_believed(BODY, RIG, Instant((beside, second)), FITS) == (share < 1.0)
+    assert is_believed(BODY, RIG, (beside, second), FITS) == (share < 1.0)
 
 
 def test_an_outline_without_landmarks_says_nothing_of_how_somebody_faces() -> None:
     """Nor does a view that is not sure; of two the nearer counts."""
-    told = [
-        (each, camera) for each, camera in zip(pair(BODY).views, RIG.cameras, strict=True) if each
-    ]
+    told = [(each, camera) for each, camera in zip(pair(BODY), RIG.cameras, strict=True) if each]
     assert not _is_turned_about(BODY, told)
     assert _is_turned_about(turned(), told)
     (first, camera_1), (second, camera_2) = told

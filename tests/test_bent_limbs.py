@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from staging import PERSON, RIG, report, silhouettes, standing
+from staging import PERSON, RIG, observation, silhouettes, standing
 
 from common.body.body import JOINT_NAMES, LIMBS
 from common.body.kinematics import joints
@@ -17,7 +17,15 @@ from integrator.single.sight import Annotations, Sight
 
 CAMERA = RIG.cameras[0]
 SIGHT = Sight(
-    DEFAULT, 0, RIG, report(1, silhouettes(standing())[0]), ADULT, PERSON, None, 0.0, Annotations()
+    DEFAULT,
+    0,
+    RIG,
+    observation(silhouettes(standing())[0]),
+    ADULT,
+    PERSON,
+    None,
+    0.0,
+    Annotations(),
 )
 SHANKS = [LIMBS.index(f"{side}_lower_leg") for side in "rl"]
 KNEES, ANKLES = (

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from staging import report
+from staging import observation
 
-from common.bus.messages import Report
+from common.body.observation import Observation
 from common.raster.similarity import Mask
 from common.rig.camera import Camera, Rig, as_matrix, as_row
 from integrator.rig.best_pair import best_pair, two_of
@@ -38,11 +38,11 @@ def person(cut: bool = False) -> Mask:
     return mask
 
 
-def seen(*views: str) -> tuple[Report | None, ...]:
+def seen(*views: str) -> tuple[Observation | None, ...]:
     """Of each view: `whole`, `cut` or `none`."""
     return tuple(
-        None if view == "none" else report(n + 1, person(view == "cut"), cut=view == "cut")
-        for n, view in enumerate(views)
+        None if view == "none" else observation(person(view == "cut"), cut=view == "cut")
+        for view in views
     )
 
 

@@ -6,7 +6,7 @@ import pytest
 from test_own_landmarks import acted
 
 from common.body.body import JOINT_NAMES
-from common.bus.messages import Landmarks
+from common.body.observation import Landmarks
 from viewer.landmarks.body_region import BONES, body_region, bone_region, stature_px
 
 

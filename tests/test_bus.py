@@ -24,7 +24,7 @@ from common.bus.control_messages import ClockAnswer, ClockQuestion, Pulse
 from common.bus.inbox import BOUND, Alive, Inbox
 from common.bus.mailbox import Mailbox
 from common.bus.message_codec import MAX_BYTES, encode
-from common.bus.messages import Guide, Picture, Posture, Report
+from common.bus.messages import Guide, Picture, Posture, View
 from common.config.part_settings import BusSettings, SettingsError
 
 ROOM = "hall"
@@ -42,10 +42,10 @@ def a_guide(frame: int) -> Guide:
     return Guide(frame=frame, captured_s=frame / 15, clock_s=0.0, frames=(frame, frame))
 
 
-def a_report(viewer: int, frame: int) -> Report:
+def a_report(viewer: int, frame: int) -> View:
     fields = {"viewer": viewer, "width": 8, "height": 2, "silhouette": b"\x00\xff", "box": None}
     times = {"frame": frame, "captured_s": frame / 15, "clock_s": 0.0}
-    return msgspec.convert({**fields, **times}, Report)
+    return msgspec.convert({**fields, **times}, View)
 
 
 @pytest.fixture
@@ -90,7 +90,7 @@ def test_two_viewers_an_integrator_and_a_recognizer_hear_each_other(place: Place
     """D2: clients speak to each other through the hub, which peers would not relay."""
     with ExitStack() as doors:
         first, second, recognizer = (client(place, doors) for _ in range(3))
-        reports = place.hub.subscribe(Report)
+        reports = place.hub.subscribe(View)
         pulses = [bus.subscribe(Pulse) for bus in (place.hub, recognizer)]
         guides = [bus.subscribe(Guide) for bus in (first, second)]
         postures = second.subscribe(Posture)
@@ -148,7 +148,7 @@ def test_a_malformed_message_is_counted_logged_once_and_the_next_good_one_arrive
     place: Place, payload: bytes, caplog: pytest.LogCaptureFixture
 ) -> None:
     assert payload != encode(a_report(1, 4))
-    inbox = place.hub.subscribe(Report)
+    inbox = place.hub.subscribe(View)
     with foreigner(place) as stranger:
         for said in (payload, payload, encode(a_report(1, 5))):
             # A megabyte that waits for room for a millisecond only is dropped on a busy machine.
@@ -163,7 +163,7 @@ def test_a_reader_that_sleeps_keeps_the_latest_and_counts_the_rest(place: Place)
     spoken = BOUND + 20
     with ExitStack() as doors:
         speaker = client(place, doors)
-        pulses, inbox = place.hub.subscribe(Pulse), place.hub.subscribe(Report)
+        pulses, inbox = place.hub.subscribe(Pulse), place.hub.subscribe(View)
         once_heard(pulses, speaker)
         for frame in range(spoken):
             speaker.publish(a_report(1, frame))
@@ -179,7 +179,7 @@ def test_a_reader_that_sleeps_keeps_the_latest_and_counts_the_rest(place: Place)
 
 def test_what_is_lost_on_the_way_is_counted_by_who_should_have_heard_it(place: Place) -> None:
     """Messages are numbered; a speaker who is started again begins with the first."""
-    key, inbox = f"tritrack/{ROOM}/viewer/1/report", place.hub.subscribe(Report)
+    key, inbox = f"tritrack/{ROOM}/viewer/1/report", place.hub.subscribe(View)
     with ExitStack() as doors:
         session = doors.enter_context(foreigner(place))
         heard = session.declare_subscriber(key)
@@ -358,14 +358,14 @@ def test_an_endpoint_that_is_none_is_refused(endpoint: str) -> None:
 
 def test_a_closed_bus_wakes_who_waits(endpoint: str) -> None:
     with open_hub(BusSettings(endpoint), ROOM) as hub:
-        inbox, watcher = hub.subscribe(Report), hub.watch_alive()
+        inbox, watcher = hub.subscribe(View), hub.watch_alive()
     assert inbox.take(60.0) is None
     assert watcher.take(60.0) is None
 
 
 def test_the_local_bus_hands_on_what_was_encoded_and_refuses_what_is_not_finite() -> None:
     bus = LocalBus(ROOM)
-    inbox = bus.subscribe(Report)
+    inbox = bus.subscribe(View)
     said = a_report(1, 3)
     bus.publish(said)
     bus.publish(msgspec.structs.replace(said, score=float("nan")))
@@ -430,7 +430,7 @@ def test_what_another_run_says_is_dropped_counted_and_named(
         hub.answer(ClockQuestion, lambda _: ClockAnswer(now_s=1.0))
         hub.keep(Guide)
         hub.publish(a_guide(5))
-        inbox = hub.subscribe(Report)
+        inbox = hub.subscribe(View)
         own = doors.enter_context(open_client(ours, ROOM, SOON_S))
         own.publish(a_report(1, 0))
         for settings in strangers:
@@ -455,7 +455,7 @@ def test_a_listener_without_a_word_hears_a_run_that_has_one(endpoint: str) -> No
     with ExitStack() as doors:
         hub = doors.enter_context(open_hub(BusSettings(endpoint, "monday"), ROOM))
         listener = doors.enter_context(open_client(BusSettings(endpoint), ROOM, SOON_S))
-        inbox = listener.subscribe(Report)
+        inbox = listener.subscribe(View)
         until_s = time.monotonic() + SOON_S
         heard = None
         while heard is None and time.monotonic() < until_s:

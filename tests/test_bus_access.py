@@ -20,7 +20,7 @@ from common.bus.bus_keys import PARTS, Part
 from common.bus.control_messages import ClockAnswer, ClockQuestion, Ended, Pulse
 from common.bus.inbox import Alive, Inbox
 from common.bus.message_codec import TOPICS, encode, key_of
-from common.bus.messages import Guide, Message, Picture, Report
+from common.bus.messages import Guide, Message, Picture, View
 from common.config.part_settings import BusSettings
 
 ROOM = "hall"
@@ -108,7 +108,7 @@ def delivered(settings: BusSettings) -> tuple[int, int]:
             for part in ("viewer1", "animator", "client")
         )
         inboxes: list[Inbox[Any]] = [
-            bus.subscribe(kind) for bus in (hub, page) for kind in (Report, type(BODY))
+            bus.subscribe(kind) for bus in (hub, page) for kind in (View, type(BODY))
         ]
         time.sleep(LATE_S)
         forged, true = 0, 0
@@ -142,7 +142,7 @@ def test_neither_another_mode_nor_a_wildcard_widens_what_a_part_may_say(
     place = {"connect": hall.settings.endpoint}
     with ExitStack() as doors:
         page = enter(hall, doors, "animator")
-        inboxes = [bus.subscribe(kind) for bus in (hall.hub, page) for kind in (Report, type(BODY))]
+        inboxes = [bus.subscribe(kind) for bus in (hall.hub, page) for kind in (View, type(BODY))]
         false = doors.enter_context(foreign(mode, place, tls_as(keys, name)))
         time.sleep(LATE_S)
         own, report = (msgspec.structs.replace(REPORT, viewer=viewer) for viewer in (1, 2))

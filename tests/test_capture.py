@@ -18,7 +18,7 @@ import numpy as np
 import psutil
 import pytest
 
-from common.bus.messages import Landmarks
+from common.body.observation import Landmarks
 from common.video.clip_facts import ClipView
 from common.video.decoding import DAMAGED, END, FRAME, HEADER, INFO, MAGIC, STALL_S, Decoder
 from common.video.pictures import CameraLost, Decoded, DecoderDied, Image, Undecodable, Wanted

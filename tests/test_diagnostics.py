@@ -1,11 +1,13 @@
 """What is odd about a performance, a line each."""
 
 import msgspec
+import numpy as np
 import pytest
+from staging import report as staged
 
 from calibration.gate import rig_agreement
 from common.bus.instant import Instant
-from common.bus.messages import Agreement, Box, Report, ScaleSource
+from common.bus.messages import Agreement, ScaleSource, View
 from common.config.part_settings import BodySettings
 from common.config.settings import Settings
 from common.method import DEFAULT
@@ -16,18 +18,8 @@ from integrator.diagnostics import DOUBTED
 RIG = paper_rig((160, 120), (200.0, 200.0), (4.5, 4.5))
 
 
-def report(viewer: int, seen: bool = True, cut: bool = False) -> Report:
-    return Report(
-        frame=0,
-        captured_s=0.0,
-        clock_s=0.0,
-        viewer=viewer,
-        width=8,
-        height=1,
-        silhouette=b"\0",
-        box=Box(0, 1, 0, 0) if seen else None,
-        cut=cut,
-    )
+def report(viewer: int, seen: bool = True, cut: bool = False) -> View:
+    return staged(viewer, np.full((1, 8), seen), cut=cut)
 
 
 def noticed(*pairs: Instant) -> diagnostics.State:

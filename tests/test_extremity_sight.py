@@ -3,13 +3,14 @@
 import msgspec
 import numpy as np
 import pytest
-from staging import RIG
+from staging import RIG, observation
 
 from common.body.body import rest_pose
 from common.body.extremities import EXTREMITY_NAMES, extremities
 from common.body.kinematics import joints
+from common.body.observation import Landmarks, Observation
 from common.body.proportions import body_vector, thesis_bdp
-from common.bus.messages import Landmarks, Report, ViewerNumber
+from common.bus.messages import ViewerNumber
 from common.rig.camera import project
 from integrator.landmarks.extremity_sight import DEPTH_BY_RULE, seen_extremities
 
@@ -20,24 +21,14 @@ NOBODY = Landmarks(((0.0, 0.0),) * 15, (0.0,) * 15)
 TOE = EXTREMITY_NAMES.index("l_toe")
 
 
-def report(viewer: ViewerNumber, places_m: np.ndarray, sure: tuple[float, ...]) -> Report:
+def report(viewer: ViewerNumber, places_m: np.ndarray, sure: tuple[float, ...]) -> Observation:
     """A view that sees these places."""
     pixels = tuple(map(tuple, project(RIG.cameras[viewer - 1], places_m).tolist()))
     shown = msgspec.structs.replace(NOBODY, extremities_px=pixels, extremities_confidence=sure)
-    return Report(
-        frame=0,
-        captured_s=0.0,
-        clock_s=0.0,
-        viewer=viewer,
-        width=160,
-        height=120,
-        silhouette=b"",
-        box=None,
-        landmarks=shown,
-    )
+    return observation(landmarks=shown)
 
 
-def found(*views: Report | None) -> tuple[np.ndarray, np.ndarray]:
+def found(*views: Observation | None) -> tuple[np.ndarray, np.ndarray]:
     first, second = views
     return seen_extremities(RULE_M, RIG, (first, second), STATURE_M)
 

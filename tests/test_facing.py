@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from posing import ROOT_PX, picture, posed, stretched
 
+from common.body.observation import Facing
 from common.body.proportions import thesis_bdp
-from common.bus.messages import Facing
 from viewer.paper.facing import thresholds_px, trunk_width, upper_body_px, vote
 
 BDP = thesis_bdp(1.0)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from truth_teacher import keypoints_of
 
-from common.bus.messages import Landmarks
+from common.body.observation import Landmarks
 from lab.film_lessons.film_examples import ELSEWHERE, HELD_SHARE, example_of, looked_through
 from lab.landmark_lessons.picture_store import PictureStore
 from lab.training.training import TrainingError

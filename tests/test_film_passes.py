@@ -11,17 +11,17 @@ from typing import Any
 import msgspec
 import numpy as np
 import pytest
-from staging import RIG
+from staging import RIG, person_of
 
 from common.body.body import JOINT_NAMES
 from common.body.proportions import thesis_bdp
 from common.bus.instant import Instant
-from common.bus.messages import Body, Guide, Report, ViewerNumber
+from common.bus.messages import Body, Guide, View, ViewerNumber
 from common.config.part_settings import BodySettings
 from common.config.settings import Settings
 from common.method import METHODS, Method, Mode
 from common.notes.notes import Note, Notes
-from common.raster.silhouette_report import silhouette_report
+from common.raster.silhouette_report import silhouette_view
 from common.rig.camera import Camera, Rig
 from common.video.clip_facts import Clip, ClipView, Meta
 from common.video.clip_sources import ClipError
@@ -50,24 +50,22 @@ FEW = 10
 
 
 @pytest.fixture(scope="module")
-def silhouettes(clip: Path) -> list[Report]:
+def silhouettes(clip: Path) -> list[View]:
     """True silhouettes of somebody who raises an arm."""
     with np.load(clip / "truth.npz") as truth:
         masks = np.unpackbits(truth["mask_cam1"], axis=2)[:, :, : SIZE[0]].astype(np.bool_)
-    return [silhouette_report(1, mask, n, n / 15) for n, mask in enumerate(masks)]
+    return [silhouette_view(1, mask, n, n / 15) for n, mask in enumerate(masks)]
 
 
-def posed(reports: list[Report], mode: Mode = "default", notes: Notes = Notes()) -> list[Body]:
+def posed(reports: list[View], mode: Mode = "default", notes: Notes = Notes()) -> list[Body]:
     film = FilmFacts(Settings(mode=mode), METHODS[mode], 1, 1 / 15, None, notes)
     return list(bodies_of(reports, film).bodies)
 
 
-def test_who_is_known_by_the_silhouette_is_not_fitted(
-    silhouettes: list[Report], clip: Path
-) -> None:
+def test_who_is_known_by_the_silhouette_is_not_fitted(silhouettes: list[View], clip: Path) -> None:
     """Shows 7: the search of the stick body took half of the time. Shows 3 holds all the same."""
     seen = [body for body in posed(silhouettes) if body.joints_m]
-    assert len(seen) == sum(report.box is not None for report in silhouettes)
+    assert len(seen) == sum(report.person is not None for report in silhouettes)
     assert np.mean([body.matches <= FEW for body in seen]) > 0.8
     with np.load(clip / "truth.npz") as truth:
         names = [str(name) for name in truth["joint_names"]]
@@ -79,13 +77,13 @@ def test_who_is_known_by_the_silhouette_is_not_fitted(
         assert np.linalg.norm(shown - true, axis=1).mean() < 0.06 * tall
 
 
-def test_the_thesis_fits_every_frame(silhouettes: list[Report]) -> None:
+def test_the_thesis_fits_every_frame(silhouettes: list[View]) -> None:
     """T10 to T18: as printed, nothing is proposed."""
     some = silhouettes[20:23]
     assert min(body.matches for body in posed(some, "thesis")) > 100
 
 
-def test_who_is_told_to_face_elsewhere_is_fitted(silhouettes: list[Report]) -> None:
+def test_who_is_told_to_face_elsewhere_is_fitted(silhouettes: list[View]) -> None:
     """T22: what is proposed faces the camera; the user's word goes before it."""
     some = silhouettes[20:24]
     notes = Notes(note=(Note(some[2].frame, orientation="left"),))
@@ -94,19 +92,19 @@ def test_who_is_told_to_face_elsewhere_is_fitted(silhouettes: list[Report]) -> N
     assert [body.lifting.orientation for body in found[2:] if body.lifting] == ["left", "left"]
 
 
-def test_who_left_is_met_afresh(silhouettes: list[Report]) -> None:
+def test_who_left_is_met_afresh(silhouettes: list[View]) -> None:
     """P9: a frame without anybody has no pose, and the next one owes it nothing."""
-    empty = silhouette_report(1, np.zeros((SIZE[1], SIZE[0]), np.bool_), 2, 2 / 15)
+    empty = silhouette_view(1, np.zeros((SIZE[1], SIZE[0]), np.bool_), 2, 2 / 15)
     some = [silhouettes[20], silhouettes[21], empty, silhouettes[20], silhouettes[21]]
     bodies = posed(some)
     assert [bool(body.joints_m) for body in bodies] == [True, True, False, True, True]
     assert np.allclose(bodies[3].joints_m, bodies[0].joints_m, rtol=0.0, atol=1e-12)
 
 
-class Lent(Sequence[Report]):
+class Lent(Sequence[View]):
     """Reports that are read one by one, as from a file, and how many were alive at once."""
 
-    def __init__(self, reports: list[Report]) -> None:
+    def __init__(self, reports: list[View]) -> None:
         self.reports = reports
         self.kept: list[int] = []
 
@@ -116,14 +114,14 @@ class Lent(Sequence[Report]):
     def __getitem__(self, index: Any) -> Any:
         return copy(self.reports[index])
 
-    def __iter__(self) -> Iterator[Report]:
+    def __iter__(self) -> Iterator[View]:
         for report in self.reports:
             lent = copy(report)
             yield lent
             self.kept.append(sys.getrefcount(lent))
 
 
-def test_a_film_of_any_length_is_not_held_in_memory(silhouettes: list[Report]) -> None:
+def test_a_film_of_any_length_is_not_held_in_memory(silhouettes: list[View]) -> None:
     let_go, passed = Lent(silhouettes[20:24]), Lent(silhouettes[20:24])
     for _ in let_go:
         pass
@@ -179,10 +177,10 @@ def looks(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
         for n in range(given[-1], 5):
             yield CapturedFrame(n, n / 15, n / 15, np.zeros((0, 0, 3), np.uint8))
 
-    def look(state: int, frame: CapturedFrame, guide: None) -> tuple[int, Report, None]:
+    def look(state: int, frame: CapturedFrame, guide: None) -> tuple[int, View, None]:
         mask = np.zeros((4, 4), np.bool_)
         mask.flat[: frame.index + 5] = True
-        return state + 1, silhouette_report(2, mask, frame.index, frame.captured_s), None
+        return state + 1, silhouette_view(2, mask, frame.index, frame.captured_s), None
 
     def init(*given: Any, **more: Any) -> int:
         asked.append((*given, more))
@@ -219,7 +217,7 @@ def test_the_first_pass_looks_at_every_frame_and_saves_where_it_is(looks: list[A
 def test_the_first_pass_goes_on_from_where_it_was_left(looks: list[Any]) -> None:
     left: Any = Cutting(7, 3, 40.0)  # type: ignore[arg-type]
     work = Left(**{CUTTING: left})
-    work.messages(REPORTS).append(silhouette_report(2, np.eye(4, dtype=np.bool_), 2))
+    work.messages(REPORTS).append(silhouette_view(2, np.eye(4, dtype=np.bool_), 2))
     reports = silhouettes_of(CLIP, BEHIND, film_of(), object(), None, Course(work=work))  # type: ignore[arg-type]
     assert [asked[-1] for asked in looks] == [3], "no new viewer"
     assert [one.frame for one in reports] == [2, 3, 4]
@@ -236,7 +234,7 @@ def test_a_film_in_which_most_of_the_picture_changes_is_refused(
     for count in (*pixels, 0, 0, 0):
         mask = np.zeros((2, 8), np.bool_)
         mask.flat[:count] = True
-        reports.append(silhouette_report(1, mask))
+        reports.append(silhouette_view(1, mask))
     if refused:
         with pytest.raises(ClipError, match=r"^a\.mp4: most of the picture changes, so its camera"):
             film_passes._refuse_a_moving_camera(reports, "a.mp4")
@@ -257,7 +255,7 @@ class Poses:
         monkeypatch.setattr(film_passes, "calmed", self.calm)
         monkeypatch.setattr("runtime.offline.film_passes.time.perf_counter", lambda: next(ticks))
 
-    def posed(self, at: Posing, report: Report, _: FilmFacts) -> tuple[Posing, Any]:
+    def posed(self, at: Posing, report: View, _: FilmFacts) -> tuple[Posing, Any]:
         return at._replace(guide=report.frame), f"body {report.frame}"  # type: ignore[arg-type]
 
     def calm(self, *given: Any) -> list[str]:
@@ -265,8 +263,8 @@ class Poses:
         return ["calm"]
 
 
-def told(count: int) -> list[Report]:
-    return [silhouette_report(1, np.ones((4, 4), np.bool_), 10 + n) for n in range(count)]
+def told(count: int) -> list[View]:
+    return [silhouette_view(1, np.ones((4, 4), np.bool_), 10 + n) for n in range(count)]
 
 
 def test_the_second_pass_keeps_each_body_and_where_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -315,7 +313,7 @@ def test_each_frame_is_told_by_its_own_viewer_with_what_the_user_says(
     film = film_of(number=number, notes=notes, scale=0.5)
     guide = Guide(frame=4, captured_s=0.3, clock_s=0.3, frames=(4, 4))
 
-    def describe(*of: Any) -> tuple[str, Report]:
+    def describe(*of: Any) -> tuple[str, View]:
         asked.append(of)
         return "viewer on", of[1]
 
@@ -340,11 +338,11 @@ def test_each_frame_is_told_by_its_own_viewer_with_what_the_user_says(
     assert asked[2][3] is None
 
 
-def standing(top: int, bottom: int, cut: bool = False) -> Report:
+def standing(top: int, bottom: int, cut: bool = False) -> View:
     """A silhouette as high as 160x120 has these rows."""
     mask = np.zeros((SIZE[1], SIZE[0]), np.bool_)
     mask[top:bottom, 0 if cut else 60 : 80] = True
-    return silhouette_report(1, mask)
+    return silhouette_view(1, mask)
 
 
 @pytest.mark.parametrize("method", [METHODS["default"], THESIS])
@@ -379,7 +377,7 @@ def test_the_scale_is_told_by_whole_silhouettes_of_all_of_the_film(
 
 
 def test_where_all_are_cut_these_tell_the_camera_and_of_nobody_the_picture() -> None:
-    cut = [film_passes._stand_of(standing(12, 93, cut=True))]
+    cut = [film_passes._stand_of(person_of(standing(12, 93, cut=True)))]
     assert film_passes._sights(cut, SIZE).tolist() == [[12.0, 93.0]]
     assert film_passes._sights([], SIZE).tolist() == [[0.0, 120.0]]
     lies = Stand((50.0, 70.0), whole=True, upright=False)

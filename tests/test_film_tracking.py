@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from staging import RIG, report
 
-from common.bus.messages import Body, Report
+from common.bus.messages import Body, View
 from common.config.part_settings import SilhouetteSettings
 from common.config.settings import Settings
 from common.method import METHODS
@@ -100,7 +100,7 @@ class Passes:
         for name in ("silhouettes_of", "bodies_of", "outside_sources"):
             monkeypatch.setattr(film_tracking, name, getattr(self, name))
 
-    def silhouettes_of(self, *given: Any) -> list[Report]:
+    def silhouettes_of(self, *given: Any) -> list[View]:
         self.asked.append(given)
         return [REPORT] * 3
 
@@ -198,8 +198,7 @@ def test_masks_that_are_lower_than_a_person_show_nobody(monkeypatch: pytest.Monk
     settings = msgspec.structs.replace(settings, silhouette=silhouette, mode="thesis")
     reports = [report(1, mask(rows), captured_s=n / 8) for n, rows in enumerate(heights)]
     done = follow_masks("masks", reports, settings)
-    assert [bool(one.box) for one in done.reports] == [True, False, True, False]
-    assert not any(done.reports[1].silhouette)
+    assert [bool(one.people) for one in done.reports] == [True, False, True, False]
     assert done.reports[0] is reports[0]
     film = FilmFacts(settings, METHODS["thesis"], 1, 1 / 8, None)
     assert passes.asked[0][:2] == (4, film)

@@ -5,11 +5,11 @@ from typing import Any
 import msgspec
 import numpy as np
 import pytest
-from staging import PERIOD_S, PERSON, RIG, report, silhouettes, standing
+from staging import PERIOD_S, PERSON, RIG, observation, silhouettes, standing
 
 from common.body.body import POSE_INDEX, YAW_DEG
+from common.body.observation import Facing, Observation, Search
 from common.body.proportions import LOWER_LEG_HEIGHT, UPPER_LEG_HEIGHT, body_vector
-from common.bus.messages import Facing, Report
 from common.config.settings import Settings
 from common.method import DEFAULT, PAPER, Method
 from integrator import merge_state
@@ -19,11 +19,12 @@ from integrator.paper import fused_pose
 from integrator.rig.body_position import scales_at
 
 
-def view(number: Any, vote: Facing, width_px: float, at: tuple[float, float]) -> Report:
+def view(number: Any, vote: Facing, width_px: float, at: tuple[float, float]) -> Observation:
     """A report that votes so, of an upper body so wide, the navel at a pixel."""
-    made = report(number, silhouettes(standing())[number - 1])
+    search = Search(at, {}, False, 0.0, 0)
+    made = observation(silhouettes(standing())[number - 1])
     return msgspec.structs.replace(
-        made, vote=vote, upper_body_px=width_px, thresholds_px=(18.0, 22.0), root_px=at
+        made, vote=vote, upper_body_px=width_px, thresholds_px=(18.0, 22.0), search=search
     )
 
 
@@ -35,7 +36,7 @@ def state(method: Method, opening: Opening | None = None, **more: Any) -> State:
     return made._replace(opening=opening or Opening(bdp=PERSON), **more)
 
 
-def faced(made: State, *seen: Report | None) -> tuple[Facing, ...]:
+def faced(made: State, *seen: Observation | None) -> tuple[Facing, ...]:
     first, second = seen
     return fused_pose.step(made, RIG, (first, second), None).facing
 

@@ -5,10 +5,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from posing import posed
-from staging import report
+from staging import observation
 
 from common.body.body import POSE_INDEX, POSE_NAMES, Vector
-from common.bus.messages import Report
+from common.body.observation import Observation
 from common.method import DEFAULT, PAPER, Method
 from integrator.paper.fusion import fused, lifted
 
@@ -37,12 +37,12 @@ FLANK = {
 BEFORE = np.arange(25.0) + 300.0
 
 
-def facade(squatting: bool = False, **angles_deg: float) -> Report:
-    return report(1, angles_deg=FACADE | angles_deg, squatting=squatting)
+def facade(squatting: bool = False, **angles_deg: float) -> Observation:
+    return observation(angles_deg=FACADE | angles_deg, squatting=squatting)
 
 
-def flank() -> Report:
-    return report(2, angles_deg=FLANK)
+def flank() -> Observation:
+    return observation(angles_deg=FLANK)
 
 
 def of(pose: Vector, *names: str) -> list[float]:

@@ -8,7 +8,7 @@ from test_message_codec import BODY, REPORT
 from common.bus.control_messages import ClockAnswer, ClockQuestion
 from common.bus.inbox import BOUND, MOST_GAP, Inbox, answered, checked
 from common.bus.message_codec import encode, key_of
-from common.bus.messages import Body, Guide, Report
+from common.bus.messages import Body, Guide, View
 
 KEY = key_of(REPORT, "hall")
 
@@ -17,7 +17,7 @@ def test_what_came_on_its_own_key_is_taken_in_and_all_else_is_counted(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
     """The first is logged, a hundred more are not."""
-    box = Inbox(Report, "hall")
+    box = Inbox(View, "hall")
     box.offer(KEY, encode(REPORT))
     box.offer(KEY.replace("/1/", "/2/").replace("/2/", "/3/"), encode(REPORT))
     box.offer(KEY, b"no message")

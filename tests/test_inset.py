@@ -23,9 +23,9 @@ from animator.scene import Figure, limb_colours
 from common.body.body import LIMBS, POSE_INDEX, Vector, rest_pose
 from common.body.kinematics import segments
 from common.body.proportions import body_vector, stature, thesis_bdp
-from common.bus.messages import Picture, Report
+from common.bus.messages import Picture, View
 from common.raster.kernel import draw_body, view_of
-from common.raster.silhouette_report import pack
+from common.raster.silhouette_report import silhouette_view
 from common.rig.camera import Camera, paper_rig, project
 
 BDP = thesis_bdp(1.75)
@@ -50,18 +50,8 @@ ARMS_UP = standing(r_shoulder_z=0.0, l_shoulder_z=360.0)
 SQUAT = standing(y=LEG_M / 2, r_hip_x=60.0, l_hip_x=60.0, r_knee_x=-120.0, l_knee_x=-120.0)
 
 
-def report(mask: np.ndarray) -> Report:
-    height, width = mask.shape
-    return Report(
-        frame=0,
-        captured_s=0.0,
-        clock_s=0.0,
-        viewer=1,
-        width=width,
-        height=height,
-        silhouette=pack(mask),
-        box=None,
-    )
+def report(mask: np.ndarray) -> View:
+    return silhouette_view(1, mask)
 
 
 def drawn(pose: Vector) -> Image:
@@ -196,11 +186,10 @@ def test_a_rehearsal_compiles_what_draws_a_body() -> None:
     assert told.stdout.split() == ["1", "1", "1"]
 
 
-def covered(left_half: bool = True) -> Report:
+def covered(left_half: bool = True) -> View:
     mask = np.zeros((60, 320), np.bool_)
     mask[:, :160] = left_half
-    return Report(frame=0, captured_s=0.0, clock_s=0.0, viewer=1, width=320, height=60,
-                  silhouette=pack(mask), box=None)  # fmt: skip
+    return silhouette_view(1, mask)
 
 
 def test_a_silhouette_tints_the_picture_and_is_painted_over_nothing_without_one() -> None:

@@ -19,7 +19,7 @@ from calibration.tracks.joint_tracks import (
     useful_times,
 )
 from common.body.body import JOINT_NAMES
-from common.bus.messages import Landmarks
+from common.body.observation import Landmarks
 
 
 def moving(frames: int, sure: float = 0.9) -> JointTrack:

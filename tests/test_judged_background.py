@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from test_own_landmarks import RIG
 
-from common.bus.messages import Landmarks
+from common.body.observation import Landmarks
 from common.config.part_settings import SilhouetteSettings
 from common.raster.similarity import Mask
 from common.video.pictures import Image

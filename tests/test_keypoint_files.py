@@ -10,7 +10,7 @@ import pytest
 
 from common.body.body import JOINT_NAMES
 from common.body.extremities import EXTREMITY_NAMES
-from common.bus.messages import Landmarks
+from common.body.observation import Landmarks
 from common.config.part_settings import SettingsError
 from common.video.clip_facts import ClipView
 from common.video.pictures import Decoded

@@ -5,12 +5,12 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from staging import PERSON, RIG, report, silhouettes, standing
+from staging import PERSON, RIG, observation, silhouettes, standing
 
 from common.body.body import JOINT_NAMES, OTHER_SIDE, POSE_INDEX, rest_pose
 from common.body.kinematics import joints
+from common.body.observation import Landmarks
 from common.body.proportions import body_vector
-from common.bus.messages import Landmarks
 from common.rig.camera import Camera, project
 from integrator.landmarks import front_back_flip, landmark_fusion, limb_springs, proposal_residual
 from integrator.landmarks.joint_mixture import (
@@ -26,7 +26,7 @@ from integrator.landmarks.landmark_fusion import FIRM_M
 from integrator.landmarks.landmark_rays import AT, Rays, rays_of
 from integrator.landmarks.left_right_swap import Exchanged
 from integrator.proposal.pose_network import OTHER_SIDES
-from integrator.rig.undistortion import undistorted_camera, undistorted_report
+from integrator.rig.undistortion import undistorted_camera, undistorted_observation
 
 BODY = body_vector(PERSON)
 FAR = np.array([0.25, -0.2, 0.1])
@@ -64,7 +64,7 @@ def rays(
             RIG.cameras, (joints_1_m, joints_2_m), facings, strict=True
         )
     )
-    seen = report(1, masks[0], landmarks=first), report(2, masks[1], landmarks=second)
+    seen = observation(masks[0], landmarks=first), observation(masks[1], landmarks=second)
     found = rays_of(RIG, seen)
     assert found is not None
     return found
@@ -91,7 +91,7 @@ def test_rays_lead_from_the_cameras_through_the_joints() -> None:
 
 def test_no_view_with_landmarks_gives_no_rays() -> None:
     mask = silhouettes(standing())[0]
-    assert rays_of(RIG, (report(1, mask), None)) is None
+    assert rays_of(RIG, (observation(mask), None)) is None
 
 
 def test_an_arm_that_the_outline_has_wrong_is_where_both_pictures_show_it() -> None:
@@ -139,7 +139,7 @@ def test_a_view_that_shows_both_wrists_in_one_place_tells_the_other_as_its_secon
     )
     second = shown(RIG.cameras[1], true_m)
     seen = rays_of(
-        RIG, (report(1, masks[0], landmarks=first), report(2, masks[1], landmarks=second))
+        RIG, (observation(masks[0], landmarks=first), observation(masks[1], landmarks=second))
     )
     assert seen is not None
     proposed_m = true_m[AT] + (0.0, 0.0, 0.1)
@@ -229,8 +229,8 @@ def test_landmarks_of_a_lens_that_bends_are_straightened_with_the_outline() -> N
     seen, second_m = shown(bent, true_m), true_m[OTHER_SIDE]
     second_px = shown(bent, second_m).joints_px
     seen = msgspec.structs.replace(seen, second_px=second_px, second_confidence=seen.confidence)
-    told = report(1, silhouettes(standing())[0], landmarks=seen)
-    straight = undistorted_report(told, bent).landmarks
+    told = observation(silhouettes(standing())[0], landmarks=seen)
+    straight = undistorted_observation(told, bent).landmarks
     assert straight is not None
     ideal = undistorted_camera(bent)
     assert np.array(straight.joints_px) == pytest.approx(project(ideal, true_m), abs=0.05)

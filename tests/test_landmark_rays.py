@@ -3,10 +3,11 @@
 import msgspec
 import numpy as np
 import pytest
-from staging import RIG
+from staging import RIG, observation
 
 from common.body.body import JOINT_NAMES
-from common.bus.messages import Landmarks, Report, ViewerNumber
+from common.body.observation import Landmarks, Observation
+from common.bus.messages import ViewerNumber
 from common.rig.camera import centre, project
 from integrator.landmarks.landmark_rays import AT, rays_of
 from integrator.proposal.network_weights import JOINTS
@@ -16,7 +17,7 @@ JOINTS_M, SECOND_M = rng.uniform(-0.5, 0.5, (2, 15, 3)) + np.array([0.0, 1.0, 0.
 SURE, LESS = rng.uniform(0.1, 0.9, (2, 15))
 
 
-def report(viewer: ViewerNumber, *, second: bool = False, landmarks: bool = True) -> Report:
+def report(viewer: ViewerNumber, *, second: bool = False, landmarks: bool = True) -> Observation:
     """A view that sees these joints, and others where it may see them too."""
     camera = RIG.cameras[viewer - 1]
     shown = Landmarks(
@@ -31,8 +32,7 @@ def report(viewer: ViewerNumber, *, second: bool = False, landmarks: bool = True
             second_px=tuple(map(tuple, project(camera, SECOND_M).tolist())),
             second_confidence=tuple(LESS.tolist()),
         )
-    return Report(frame=0, captured_s=0.0, clock_s=0.0, viewer=viewer, width=160, height=120,
-                  silhouette=b"", box=None, landmarks=shown if landmarks else None)  # fmt: skip
+    return observation(landmarks=shown if landmarks else None)
 
 
 def towards(viewer: ViewerNumber, places_m: np.ndarray) -> np.ndarray:
@@ -58,7 +58,7 @@ def test_rays_lead_from_each_camera_through_the_twelve_joints() -> None:
 
 
 @pytest.mark.parametrize("blind", [None, report(1, landmarks=False)], ids=["nobody", "outline"])
-def test_a_view_without_landmarks_says_nothing(blind: Report | None) -> None:
+def test_a_view_without_landmarks_says_nothing(blind: Observation | None) -> None:
     found = rays_of(RIG, (blind, report(2)))
     assert found is not None
     assert not found.confidence[0].any()

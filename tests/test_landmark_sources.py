@@ -11,7 +11,8 @@ import pytest
 from fake_mediapipe import install_fake
 from local_bus import LocalBus
 
-from common.bus.messages import Report
+from common.body.observation import Landmarks
+from common.bus.messages import View
 from common.config.part_settings import SettingsError
 from common.config.settings import Settings
 from common.method import DEFAULT
@@ -27,6 +28,10 @@ from viewer.landmarks.keypoint_files import KeypointFiles
 from viewer.landmarks.landmark_looks import SHIPPED
 from viewer.landmarks.landmark_sources import oddities, outside_sources, refuse_landmarks
 from viewer.landmarks.mediapipe_source import MediaPipe
+
+
+def landmarks_of(view: View) -> Landmarks | None:
+    return None if view.person is None else view.person.landmarks
 
 
 def keypoints(folder: Path, frames: int) -> Path:
@@ -112,15 +117,15 @@ def test_a_live_viewer_reports_the_landmarks_that_a_recorded_one_does(
     setup = track.Setup(1, None, settings, DEFAULT)
     state = track.init(setup, learn([np.zeros((120, 160, 3), np.uint8)]))
     bus = LocalBus()
-    reports = bus.subscribe(Report)
+    reports = bus.subscribe(View)
     with outside_sources(settings, (view,)) as sources, Decoder() as decoder:
         offline = {
-            frame.index: track.look(state, frame, None)[1].landmarks
+            frame.index: landmarks_of(track.look(state, frame, None)[1])
             for frame in recorded(view, 1, decoder, sources[1])
         }
         with Live(view, 1, RoomClock(time.monotonic() + 0.3), sources[1]) as live:
             viewer.run(viewer.Prepared(view, state), live, bus, threading.Event())
-    came = {report.frame: report.landmarks for report in reports.drain()}
+    came = {report.frame: landmarks_of(report) for report in reports.drain()}
     assert came
     assert None not in came.values()
     assert all(landmarks == offline[index] for index, landmarks in came.items())

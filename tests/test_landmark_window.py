@@ -5,7 +5,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from common.bus.messages import Box
+from common.body.observation import Box
 from viewer.landmarks.landmark_window import (
     GREY,
     SIDE,

@@ -14,7 +14,7 @@ from common.bus.control_messages import ClockAnswer, ClockQuestion
 from common.bus.inbox import Alive
 from common.bus.live_bus import LiveBus
 from common.bus.message_codec import MAX_BYTES, encode, key_of
-from common.bus.messages import Body, Guide, Message, Picture, Report
+from common.bus.messages import Body, Guide, Message, Picture, View
 
 ROOM = "hall"
 PICTURE = Picture(frame=7, captured_s=0.5, clock_s=0.5, viewer=2, jpeg=b"\xff\xd8")
@@ -187,7 +187,7 @@ def test_who_has_no_word_hears_all_and_counts_what_bears_a_number() -> None:
 def test_what_counts_by_its_newest_alone_waits_in_a_short_ring() -> None:
     session = Session()
     bus = LiveBus(session, ROOM)
-    for kind in (Guide, Report):
+    for kind in (Guide, View):
         bus.subscribe(kind)
     ring, line = (one.how["channel"] for one in session.declared)
     assert isinstance(ring, zenoh.handlers.RingChannel)

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from calibration.paper.markers import MarkerView, fitted_lines, line_markers
 from common.body.body import Vector
-from common.bus.messages import Pixel
+from common.body.observation import Pixel
 from common.rig.camera import Camera, as_matrix, as_row, centre, paper_rig, project
 from common.rig.rig_file import CalibrationError
 

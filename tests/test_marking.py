@@ -59,7 +59,7 @@ from animator.marking.sheet import (
 )
 from calibration.paper.calibration import read_points, run_markers, run_poles
 from calibration.paper.poles import Poles
-from common.bus.messages import Pixel
+from common.body.observation import Pixel
 from common.config.part_settings import PageSettings
 from common.rig.camera import as_paper_rig
 from common.rig.rig_file import CalibrationError, load_rig

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from common.raster.silhouette_report import unpack
+from common.raster.silhouette_report import mask_of
 from tritrack.single import mask_file
 from tritrack.single.mask_file import MaskFileError, is_mask_file, read_masks
 
@@ -25,7 +25,7 @@ def packed(name: str) -> dict[str, np.ndarray]:
 def test_masks_come_back(tmp_path: Path, arrays: dict[str, np.ndarray]) -> None:
     found = read_masks(written(tmp_path / "a.npz", **arrays))
     assert {(each.width, each.height) for each in found.reports} == {(13, 20)}
-    assert np.array_equal(np.stack([unpack(each) for each in found.reports]), MASKS)
+    assert np.array_equal(np.stack([mask_of(each) for each in found.reports]), MASKS)
     assert [each.captured_s for each in found.reports] == [0.0, 0.04, 0.08, 0.12, 0.16]
 
 
@@ -85,7 +85,7 @@ def test_rows_are_packed_into_whole_bytes(tmp_path: Path, width: int) -> None:
     masks = np.random.default_rng(1).random((2, 3, width)) > 0.4
     arrays = {"walk": np.packbits(masks, axis=2), "walk__shape": np.array(masks.shape)}
     found = read_masks(written(tmp_path / "a.npz", **arrays))
-    assert np.array_equal(np.stack([unpack(each) for each in found.reports]), masks)
+    assert np.array_equal(np.stack([mask_of(each) for each in found.reports]), masks)
 
 
 def test_what_a_file_holds_is_named_four_of_it_at_most(tmp_path: Path) -> None:

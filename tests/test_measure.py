@@ -12,8 +12,9 @@ from posing import BODY, ROOT_PX, SIZE, box_around, picture, posed, stretched, v
 
 from common.body.body import LIMBS, Bdp, Elliptic, Vector
 from common.body.kinematics import segments
+from common.body.observation import Observation
 from common.body.proportions import body_vector, thesis_bdp
-from common.bus.messages import Guide, Report
+from common.bus.messages import Guide
 from common.raster.bits import count, pack_words, unpack_words
 from common.raster.kernel import draw_limbs
 from common.raster.silhouette_report import pack
@@ -356,11 +357,11 @@ def test_the_depth_is_read_above_the_centre_alone() -> None:
     assert (measure.height_px, measure.centre_px, measure.depth_px) == (100.0, (66.0, 10.0), 6.0)
 
 
-def report_of(mask: Mask, cut: bool = False) -> Report:
-    return Report(
-        frame=0, captured_s=0.0, clock_s=0.0, viewer=1, width=160, height=120,
-        silhouette=pack(mask), box=box_around(mask), cut=cut,
-    )  # fmt: skip
+def seen_as(mask: Mask, cut: bool = False) -> Observation:
+    box = box_around(mask)
+    return Observation(
+        width=160, height=120, silhouette=pack(mask), box=box, area_px=int(mask.sum()), cut=cut
+    )
 
 
 def test_a_view_measures_until_the_body_is_measured() -> None:
@@ -369,18 +370,18 @@ def test_a_view_measures_until_the_body_is_measured() -> None:
     box = box_around(mask)
     guide = Guide(frame=0, captured_s=0.0, clock_s=0.0, frames=(0, 0), measured=True)
     unmeasured = msgspec.structs.replace(guide, measured=False)
-    assert opening_measure(mask, report_of(mask), guide, "facade") == (None, "")
+    assert opening_measure(mask, seen_as(mask), guide, "facade") == (None, "")
     for known in (None, unmeasured):
-        facade = opening_measure(mask, report_of(mask), known, "facade")
+        facade = opening_measure(mask, seen_as(mask), known, "facade")
         assert facade == (measure_front(mask, box), "")
-        assert opening_measure(mask, report_of(mask), known, "flank") == (
+        assert opening_measure(mask, seen_as(mask), known, "flank") == (
             measure_side(mask, box),
             "",
         )
     hanging = blocks(tip_row=64)
-    assert opening_measure(hanging, report_of(hanging), None, "facade") == (None, refused(hanging))
+    assert opening_measure(hanging, seen_as(hanging), None, "facade") == (None, refused(hanging))
     outside = "the person is partly outside the picture"
-    assert opening_measure(mask, report_of(mask, cut=True), None, "flank") == (None, outside)
+    assert opening_measure(mask, seen_as(mask, cut=True), None, "flank") == (None, outside)
 
 
 def test_fine_tuning_starts_from_what_was_read_and_reaches_as_far_as_it_may_be_wrong(

@@ -13,7 +13,7 @@ import pytest
 from fake_mediapipe import install_fake, shaded, view_of
 
 from common.body.body import JOINT_NAMES
-from common.bus.messages import Landmarks
+from common.body.observation import Landmarks
 from common.config.part_settings import SettingsError
 from viewer.landmarks.mediapipe_source import MediaPipe
 

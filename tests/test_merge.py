@@ -16,7 +16,9 @@ from staging import (
     Told,
     between,
     exact,
+    observation,
     opening,
+    person_of,
     report,
     silhouettes,
     squatting,
@@ -93,7 +95,9 @@ def test_standing_squatting_and_lifting_are_told_apart() -> None:
             r for r, f in zip(last.reports, last.body.facing, strict=True) if f == "facade"
         )
         assert front is not None
-        assert front.squatting == (name == "squat")
+        search = person_of(front).search
+        assert search is not None
+        assert search.squatting == (name == "squat")
     assert bent["stand"] == pytest.approx([0.0, 0.0], abs=10.0)
     assert bent["squat"] == pytest.approx([50.0, 50.0], abs=8.0)
     for lifted in ("right", "left"):
@@ -216,7 +220,7 @@ def test_who_is_partly_outside_the_only_picture_is_tracked_and_guessed_outside()
     near = [standing((0.0, 0.15 * n)) for n in range(8)]
     told = Stage(views=(1,)).show(near)[-1]
     assert told.reports[0] is not None
-    assert told.reports[0].cut
+    assert person_of(told.reports[0]).cut
     assert told.body.status == "tracking"
     sure = dict(zip(JOINT_NAMES, told.body.confidence, strict=True))
     assert sure["l_ankle"] == sure["r_ankle"] == 0.0 < sure["neck"]
@@ -315,7 +319,9 @@ def test_a_person_behind_a_camera_is_followed_by_the_other() -> None:
     assert decode(encode(told.guide), Guide) == told.guide
     back = stage.see((None, silhouettes(standing())[0]))
     assert back.reports[1] is not None
-    assert back.reports[1].score > 0.5
+    search = person_of(back.reports[1]).search
+    assert search is not None
+    assert search.score > 0.5
 
 
 def test_joints_in_the_pictures_are_the_joints_in_the_world() -> None:
@@ -455,7 +461,7 @@ def test_scores_are_those_of_each_views_own_camera_and_silhouette() -> None:
     state = instants()._replace(opening=opening, found=found)
 
     def scores(*masks: Any) -> tuple[float, ...]:
-        given = [None if mask is None else report(n + 1, mask) for n, mask in enumerate(masks)]
+        given = [None if mask is None else observation(mask) for mask in masks]
         seen = merge.Sighting(RIG, (given[0], given[1]), (0, 1), 0.1, Annotations())
         return merge._scores(state, seen)
 

@@ -11,6 +11,7 @@ from hypothesis.extra import numpy as shapes
 
 from common.body.body import ANGLE_NAMES, JOINT_NAMES, LIMBS, POSE_NAMES, rest_pose
 from common.body.extremities import EXTREMITY_NAMES
+from common.body.observation import Box, Fit, Landmarks, Measure, Observation, Search
 from common.body.proportions import thesis_bdp
 from common.bus import control_messages, messages
 from common.bus.control_messages import (
@@ -35,19 +36,15 @@ from common.bus.message_codec import (
 from common.bus.messages import (
     PROTOCOL,
     Body,
-    Box,
-    Fit,
     Guide,
-    Landmarks,
     Lifting,
-    Measure,
     Message,
     Moment,
     Picture,
     Posture,
-    Report,
+    View,
 )
-from common.raster.silhouette_report import pack, unpack
+from common.raster.silhouette_report import mask_of, pack
 from common.rig.camera import paper_rig
 from common.rig.upright import Shift, Upright
 
@@ -74,24 +71,44 @@ LANDMARKS = Landmarks(
     second_px=((9.5, -2.5),) * len(JOINT_NAMES),
     second_confidence=(0.0, 0.25) + (0.125,) * (len(JOINT_NAMES) - 2),
 )
-REPORT = Report(
+SEARCH = Search((6.5, 1.5), {"r_shoulder_x": 17.0}, False, 0.8, 40)
+PERSON = Observation(
+    width=13,
+    height=3,
+    silhouette=bytes(6),
+    box=Box(left=1, right=2, top=0, bottom=2),
+    area_px=4,
+    vote="flank",
+    thresholds_px=(12.0, 19.5),
+    measure=MEASURE,
+    search=SEARCH,
+    stick=FIT,
+    landmarks=LANDMARKS,
+)
+REPORT = View(
     frame=7,
     captured_s=0.5,
     clock_s=1000.5,
     viewer=2,
     width=13,
     height=3,
-    silhouette=bytes(6),
-    box=Box(left=1, right=2, top=0, bottom=2),
-    vote="flank",
-    thresholds_px=(12.0, 19.5),
-    measure=MEASURE,
-    root_px=(6.5, 1.5),
-    angles_deg={"r_shoulder_x": 17.0},
-    score=0.8,
-    fit=FIT,
-    landmarks=LANDMARKS,
+    people=(PERSON,),
 )
+
+
+def seen(**said: Any) -> tuple[Observation, ...]:
+    """The person with other things said of them."""
+    return (msgspec.structs.replace(PERSON, **said),)
+
+
+def searched(angles_deg: dict[str, float]) -> tuple[Observation, ...]:
+    return seen(search=msgspec.structs.replace(SEARCH, angles_deg=angles_deg))
+
+
+def of_person(**said: Any) -> View:
+    return msgspec.structs.replace(REPORT, people=seen(**said))
+
+
 GUIDE = Guide(
     frame=7,
     captured_s=0.5,
@@ -124,7 +141,9 @@ LIES = Upright(REPORT.height, REPORT.width, 3, REPORT.height, REPORT.width)
 """Its file's picture lies on a side."""
 SAID: list[Message] = [
     REPORT,
-    msgspec.structs.replace(REPORT, box=None, measure=None, root_px=None),
+    msgspec.structs.replace(REPORT, people=()),
+    of_person(measure=None, search=None, stick=None),
+    msgspec.structs.replace(REPORT, people=(PERSON, PERSON, PERSON)),
     msgspec.structs.replace(REPORT, shift=Shift(right_px=3.5, down_px=-1.25, roll_deg=0.5)),
     msgspec.structs.replace(REPORT, upright=LIES),
     GUIDE,
@@ -200,7 +219,7 @@ def test_a_message_is_taken_for_no_other_kind(message: Message) -> None:
 
 def test_a_message_of_another_protocol_is_refused() -> None:
     with pytest.raises(MalformedMessage, match=f"protocol {PROTOCOL + 1}, this is {PROTOCOL}"):
-        decode(encode(msgspec.structs.replace(REPORT, protocol=PROTOCOL + 1)), Report)
+        decode(encode(msgspec.structs.replace(REPORT, protocol=PROTOCOL + 1)), View)
 
 
 def test_a_message_of_more_than_a_megabyte_is_refused_unread() -> None:
@@ -262,11 +281,12 @@ def test_a_number_that_is_not_finite_is_refused_wherever_it_stands(
         (BODY, "joints_px", (((0.0, 0.0),) * 15, ((0.0, 0.0),) * 14), "no 15 joints"),
         (BODY, "angles_raw_deg", (0.0,) * 16, "angles_raw_deg has 16 entries, not 17"),
         (BODY, "confidence", (1.0,), "confidence has 1 entries, not 15"),
-        (REPORT, "silhouette", bytes(5), "silhouette has 5 bytes, not 6"),
-        (REPORT, "silhouette", bytes(7), "silhouette has 7 bytes, not 6"),
+        (REPORT, "people", seen(silhouette=bytes(5)), "silhouette has 5 bytes, not 6"),
+        (REPORT, "people", seen(silhouette=bytes(7)), "silhouette has 7 bytes, not 6"),
+        (REPORT, "people", seen(width=14), "a silhouette of 14x3 in a picture of 13x3"),
         (REPORT, "width", 0, "a picture of 0x3"),
         (REPORT, "height", -1, "a picture of 13x-1"),
-        (REPORT, "angles_deg", {"tail_x": 1.0}, "unknown angle 'tail_x'"),
+        (REPORT, "people", searched({"tail_x": 1.0}), "unknown angle 'tail_x'"),
     ],
 )
 def test_a_wrong_length_is_refused_and_named(
@@ -291,9 +311,9 @@ def test_a_wrong_length_is_refused_and_named(
 def test_a_stick_body_that_no_viewer_would_fit_is_refused(
     field: str, value: object, says: str
 ) -> None:
-    report = msgspec.structs.replace(REPORT, fit=msgspec.structs.replace(FIT, **{field: value}))
+    report = of_person(stick=msgspec.structs.replace(FIT, **{field: value}))
     with pytest.raises(MalformedMessage, match=says):
-        decode(encode(report), Report)
+        decode(encode(report), View)
 
 
 @pytest.mark.parametrize(
@@ -313,7 +333,7 @@ def test_a_stick_body_that_no_viewer_would_fit_is_refused(
 def test_landmarks_that_no_source_tells_are_refused(field: str, value: object) -> None:
     told = msgspec.structs.replace(LANDMARKS, **{field: value})
     with pytest.raises(MalformedMessage):
-        decode(encode(msgspec.structs.replace(REPORT, landmarks=told)), Report)
+        decode(encode(of_person(landmarks=told)), View)
 
 
 @pytest.mark.parametrize(
@@ -356,8 +376,8 @@ def test_a_body_that_was_not_lifted_from_segments_has_no_errors_of_depth() -> No
 )
 def test_what_no_viewer_would_say_is_refused(field: str, value: object) -> None:
     told = msgspec.msgpack.decode(encode(REPORT)) | {field: value}
-    with pytest.raises(MalformedMessage, match="no Report"):
-        decode(msgspec.msgpack.encode(told), Report)
+    with pytest.raises(MalformedMessage, match="no View"):
+        decode(msgspec.msgpack.encode(told), View)
 
 
 @given(st.sampled_from(kinds()), st.binary(max_size=300))
@@ -387,9 +407,10 @@ def test_a_silhouette_comes_back_at_any_width(mask: np.ndarray[Any, np.dtype[np.
     height, width = mask.shape
     packed = pack(mask)
     assert len(packed) == height * ((width + 7) // 8)
-    said = {"width": width, "height": height, "silhouette": packed, "box": None}
-    report = msgspec.structs.replace(REPORT, **said)
-    assert np.array_equal(unpack(decode(encode(report), Report)), mask)
+    box = Box(0, width - 1, 0, height - 1)
+    person = Observation(width=width, height=height, silhouette=packed, box=box, area_px=0)
+    view = msgspec.structs.replace(REPORT, width=width, height=height, people=(person,))
+    assert np.array_equal(mask_of(decode(encode(view), View)), mask)
 
 
 @pytest.mark.parametrize(
@@ -405,7 +426,7 @@ def test_a_silhouette_comes_back_at_any_width(mask: np.ndarray[Any, np.dtype[np.
 )
 def test_a_box_that_is_not_in_the_picture_is_refused(box: Box) -> None:
     with pytest.raises(MalformedMessage, match="in a picture of 13x3"):
-        decode(encode(msgspec.structs.replace(REPORT, box=box)), Report)
+        decode(encode(of_person(box=box)), View)
 
 
 @pytest.mark.parametrize(
@@ -414,7 +435,7 @@ def test_a_box_that_is_not_in_the_picture_is_refused(box: Box) -> None:
 def test_a_picture_that_was_turned_into_another_is_refused(wrong: dict[str, int]) -> None:
     report = msgspec.structs.replace(REPORT, upright=msgspec.structs.replace(LIES, **wrong))
     with pytest.raises(MalformedMessage, match="Upright"):
-        decode(encode(report), Report)
+        decode(encode(report), View)
 
 
 def test_a_body_with_a_pose_and_no_joints_is_refused() -> None:
@@ -425,22 +446,21 @@ def test_a_body_with_a_pose_and_no_joints_is_refused() -> None:
 @pytest.mark.parametrize("frame", [2**62, -(2**62), 10**10])
 def test_numbers_beyond_all_that_is_counted_are_refused(frame: int) -> None:
     with pytest.raises(MalformedMessage, match="frame holds"):
-        decode(encode(msgspec.structs.replace(REPORT, frame=frame)), Report)
+        decode(encode(msgspec.structs.replace(REPORT, frame=frame)), View)
 
 
 def test_a_time_of_a_few_hundred_digits_is_refused() -> None:
     with pytest.raises(MalformedMessage, match="captured_s holds"):
-        decode(encode(msgspec.structs.replace(REPORT, captured_s=1e200)), Report)
+        decode(encode(msgspec.structs.replace(REPORT, captured_s=1e200)), View)
 
 
 def test_a_silhouette_of_the_papers_size_has_2400_bytes() -> None:
     """Section 2 of the design: 2.4 kB, and the whole report not much more."""
     packed = pack(np.ones((120, 160), np.bool_))
     assert len(packed) == 2400
-    report = msgspec.structs.replace(
-        REPORT, width=160, height=120, silhouette=packed, fit=None, landmarks=None
-    )
-    assert len(encode(report)) < 3500
+    size = {"width": 160, "height": 120}
+    people = seen(**size, silhouette=packed, stick=None, landmarks=None)
+    assert len(encode(msgspec.structs.replace(REPORT, **size, people=people))) < 3500
 
 
 @pytest.mark.parametrize(
@@ -448,14 +468,14 @@ def test_a_silhouette_of_the_papers_size_has_2400_bytes() -> None:
     [
         (
             REPORT,
-            "measure",
-            msgspec.structs.replace(MEASURE, height_px=0.0),
+            "people",
+            seen(measure=msgspec.structs.replace(MEASURE, height_px=0.0)),
             "without height or de",
         ),
         (
             REPORT,
-            "measure",
-            msgspec.structs.replace(MEASURE, depth_px=0.0),
+            "people",
+            seen(measure=msgspec.structs.replace(MEASURE, depth_px=0.0)),
             "without height or dep",
         ),
         (BODY, "extremities_m", ((0.0, 0.0, 0.0),) * 6, "extremities_m has 6 entries, not 7"),
@@ -468,7 +488,7 @@ def test_a_silhouette_of_the_papers_size_has_2400_bytes() -> None:
         (GUIDE, "moves", (False,) * 3, "moves has no 2 entries"),
         (GUIDE, "pose", (1.0,) * 24 + (1.1e9,), r"pose holds 1100000000\.0, at most 1e\+09 is t"),
         (BODY, "joints_m", ((0.0, -1.1e9, 0.0),) * 15, r"joints_m holds -1100000000\.0, at most"),
-        (REPORT, "angles_deg", {"r_shoulder_x": 2e9}, r"angles_deg holds 2000000000\.0"),
+        (REPORT, "people", searched({"r_shoulder_x": 2e9}), r"people holds 2000000000\.0"),
         (REPORT, "shift", Shift(0.0, 2e9, 0.0), r"shift holds 2000000000\.0"),
     ],
 )
@@ -500,25 +520,29 @@ def test_what_no_body_has_is_refused_and_named(
 def test_landmarks_are_refused_with_what_is_wrong(field: str, value: object, says: str) -> None:
     found = msgspec.structs.replace(LANDMARKS, **{field: value})
     with pytest.raises(MalformedMessage, match=says):
-        decode(encode(msgspec.structs.replace(REPORT, landmarks=found)), Report)
+        decode(encode(of_person(landmarks=found)), View)
 
 
 AT_THE_EDGE = {
-    "a box of the whole picture": {"box": Box(left=0, right=12, top=0, bottom=2)},
-    "a box of one pixel": {"box": Box(left=12, right=12, top=0, bottom=0)},
+    "a box of the whole picture": {"people": seen(box=Box(left=0, right=12, top=0, bottom=2))},
+    "a box of one pixel": {"people": seen(box=Box(left=12, right=12, top=0, bottom=0))},
     "the turned picture": {"upright": LIES},
-    "the least measure": {"measure": msgspec.structs.replace(MEASURE, depth_px=1e-9)},
+    "the least measure": {"people": seen(measure=msgspec.structs.replace(MEASURE, depth_px=1e-9))},
     "thirty years": {"captured_s": 1e9, "clock_s": -1e9},
-    "a large sum": {"thresholds_px": (6e8, 6e8)},
-    "facing away": {"landmarks": msgspec.structs.replace(LANDMARKS, facing_deg=180.0)},
-    "the other way round": {"landmarks": msgspec.structs.replace(LANDMARKS, facing_deg=-180.0)},
+    "a large sum": {"people": seen(thresholds_px=(6e8, 6e8))},
+    "facing away": {"people": seen(landmarks=msgspec.structs.replace(LANDMARKS, facing_deg=180.0))},
+    "the other way round": {
+        "people": seen(landmarks=msgspec.structs.replace(LANDMARKS, facing_deg=-180.0))
+    },
     "surely": {
-        "landmarks": msgspec.structs.replace(
-            LANDMARKS, facing_confidence=1.0, second_confidence=(1.0,) * 15
+        "people": seen(
+            landmarks=msgspec.structs.replace(
+                LANDMARKS, facing_confidence=1.0, second_confidence=(1.0,) * 15
+            )
         )
     },
     "a lying stick body": {
-        "fit": msgspec.structs.replace(FIT, breadth=0.0, score=1.0, stature_px=1e-9)
+        "people": seen(stick=msgspec.structs.replace(FIT, breadth=0.0, score=1.0, stature_px=1e-9))
     },
 }
 
@@ -526,7 +550,7 @@ AT_THE_EDGE = {
 @pytest.mark.parametrize("change", AT_THE_EDGE.values(), ids=AT_THE_EDGE.keys())
 def test_what_a_viewer_just_may_say_is_let_through(change: dict[str, Any]) -> None:
     report = msgspec.structs.replace(REPORT, **change)
-    assert decode(encode(report), Report) == report
+    assert decode(encode(report), View) == report
 
 
 def test_a_message_of_just_a_megabyte_is_looked_at() -> None:

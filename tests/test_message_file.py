@@ -4,7 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from common.bus.messages import Body, Report
+from common.body.observation import Box, Observation
+from common.bus.messages import Body, View
 from runtime.unfinished.message_file import MessageFile, Place, Torn
 
 
@@ -12,22 +13,24 @@ def body(frame: int) -> Body:
     return Body(frame=frame, captured_s=frame / 15, clock_s=0.0, status="tracking", views="both")
 
 
-def report(frame: int) -> Report:
-    return Report(
+BOX = Box(0, 1, 0, 1)
+
+
+def report(frame: int) -> View:
+    return View(
         frame=frame,
         captured_s=frame / 15,
         clock_s=0.0,
         viewer=1,
         width=4,
         height=3,
-        silhouette=bytes(frame),
-        box=None,
+        people=(Observation(width=4, height=3, silhouette=bytes(frame), box=BOX, area_px=0),),
     )
 
 
 def test_it_is_the_list_of_what_was_appended(tmp_path: Path) -> None:
-    file: MessageFile[Body | Report] = MessageFile(tmp_path / "some.bin", b"head")
-    held: list[Body | Report] = []
+    file: MessageFile[Body | View] = MessageFile(tmp_path / "some.bin", b"head")
+    held: list[Body | View] = []
     assert list(file) == held
     for n in range(30):
         held.append(report(n) if n % 3 else body(n))

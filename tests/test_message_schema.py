@@ -52,8 +52,8 @@ def test_a_full_message_of_each_kind_fits(message: Message) -> None:
 
 
 def test_what_no_process_says_does_not_fit() -> None:
-    message = next(each for each in SAID if type(each).__name__ == "Report")
-    spoilt = msgpack.unpackb(encode(message)) | {"viewer": 3}
+    message = next(each for each in SAID if type(each).__name__ == "View")
+    spoilt = msgpack.unpackb(encode(message)) | {"viewer": 9}
     with pytest.raises(jsonschema.ValidationError):
         check(msgpack.packb(spoilt), type(message))
 

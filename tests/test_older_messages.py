@@ -13,13 +13,18 @@ import msgspec
 import numpy as np
 import pytest
 
+from common.body.body import JOINT_NAMES
+from common.body.observation import Search
 from common.bus.message_codec import MalformedMessage, encode
-from common.bus.messages import Body
+from common.bus.messages import PROTOCOL, Body, View
 from common.config.config_file import load
 from common.config.renamed_settings import RenamedSetting, settings_of
+from common.raster.silhouette_report import unpack
+from common.rig.camera import project
 from lab.accuracy.tracking_evaluation import _case
 from runtime.store.journal import HEAD, NAME, framed
 from runtime.store.older_messages import read_message
+from runtime.store.past_journal import read_journal
 from runtime.store.past_run import open_run
 from runtime.store.recording import read_recording
 from tritrack.exporting import export_run
@@ -84,6 +89,61 @@ def test_its_recording_gives_the_bodies_that_it_recorded_bit_for_bit() -> None:
     assert (len(done.bodies), done.same) == (FRAMES, FRAMES)
 
 
+def test_a_recording_of_protocol_10_is_read_as_views_of_people() -> None:
+    """`data/protocol_10` is the first sixteen instants of `tritrack synth --size 160x120 --posture
+    squat --seed 3`, tracked by the last version of that protocol; nine are of an empty room."""
+    pytest.importorskip("mcap", reason="recordings are an extra: install tritrack[mcap]")
+    recording = read_recording(DATA / "protocol_10")
+    assert [len(views) for views in recording.reports] == [16, 16, *[0] * 6]
+    for number, views in enumerate(recording.reports[:2], start=1):
+        assert [(view.viewer, view.frame) for view in views] == [(number, n) for n in range(16)]
+        assert not any(view.people for view in views[:7])
+        for person in (person for view in views[9:] for person in view.people):
+            assert np.count_nonzero(unpack(person)) == person.area_px > 100
+            assert person.landmarks is not None
+            assert len(person.landmarks.joints_px) == len(JOINT_NAMES)
+        assert all(len(view.people) == 1 for view in views[9:])
+    assert recording.head.rig is not None
+    for body in recording.bodies[9:]:
+        assert (body.protocol, body.person, body.seen) == (PROTOCOL, 0, (True, True))
+        shown = project(recording.head.rig.cameras[1], np.array(body.joints_m))
+        assert np.allclose(shown, body.joints_px[1], atol=1e-6)
+
+
+def test_a_journal_of_protocol_10_is_read() -> None:
+    told = read_journal(DATA / "protocol_10")
+    assert told is not None
+    bodies = [*told.bodies]
+    assert [body.frame for body in bodies] == list(range(16))
+    assert [bool(body.joints_m) for body in bodies] == [False] * 9 + [True] * 7
+
+
+def test_what_the_papers_search_found_and_a_stick_body_stand_with_the_person() -> None:
+    """A Report of protocol 11, as its fields were called."""
+    moment = {"frame": 4, "captured_s": 0.3, "clock_s": 9.3, "protocol": 11, "viewer": 2}
+    fit = {
+        "joints_px": [[1.0, 2.0]] * 15, "ratios": [1.0] * 10, "breadth": 0.5, "stature_px": 66.0,
+        "hidden": [False] * 10, "score": 0.7, "matches": 300,
+    }  # fmt: skip
+    report = {
+        **moment, "width": 8, "height": 2, "silhouette": b"\x02\x02",
+        "box": {"left": 1, "right": 1, "top": 0, "bottom": 1},
+        "area_px": 2, "blobs": 3, "cut": True, "upper_body_px": 9.0, "vote": "flank",
+        "thresholds_px": [1.0, 2.0], "measure": None, "refusal": "why", "root_px": [3.0, 4.0],
+        "angles_deg": {"r_hip_x": 5.0}, "squatting": True, "score": 0.8, "matches": 40,
+        "fit": fit, "landmarks": None, "next_s": 0.4, "fault": "", "shift": None, "upright": None,
+    }  # fmt: skip
+    view = read_message(msgspec.msgpack.encode(report), View)
+    assert (view.viewer, view.frame, view.blobs, view.next_s) == (2, 4, 3, 0.4)
+    (person,) = view.people
+    assert (person.area_px, person.cut, person.vote, person.refusal) == (2, True, "flank", "why")
+    assert person.search == Search((3.0, 4.0), {"r_hip_x": 5.0}, True, 0.8, 40)
+    assert person.stick is not None
+    assert (person.stick.score, person.track) == (0.7, 0)
+    nobody = {**report, "box": None, "silhouette": bytes(2), "root_px": None}
+    assert read_message(msgspec.msgpack.encode(nobody), View).people == ()
+
+
 def test_a_run_that_is_made_of_its_recording_is_one_of_this_version(tmp_path: Path) -> None:
     pytest.importorskip("mcap", reason="recordings are an extra: install tritrack[mcap]")
     replay_run(RUN, tmp_path / "again")
@@ -109,7 +169,7 @@ def test_its_journal_is_read_where_the_run_was_cut_short(tmp_path: Path) -> None
 
 def test_a_message_of_another_protocol_is_refused() -> None:
     body = Body(frame=0, captured_s=0.0, clock_s=0.0, status="empty", views="none")
-    for protocol in (10, 99):
+    for protocol in (9, 13, 99):
         with pytest.raises(MalformedMessage, match=f"protocol {protocol}"):
             read_message(encode(msgspec.structs.replace(body, protocol=protocol)), Body)
 

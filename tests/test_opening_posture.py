@@ -6,18 +6,18 @@ import msgspec
 import numpy as np
 import pytest
 from posing import box_around
-from staging import NAVEL_M, PERSON, RIG, opening, report, silhouettes
+from staging import NAVEL_M, PERSON, RIG, observation, opening, silhouettes
 
 from common.body.body import Bdp, Elliptic
+from common.body.observation import Measure, Observation
 from common.body.proportions import stature, thesis_bdp
-from common.bus.messages import Measure, Report
 from common.method import DEFAULT, PAPER
 from common.rig.camera import Camera, Rig, as_matrix, as_row, paper_rig
 from integrator import opening_posture as stage
 from integrator.opening_posture import LEG_KEPT, Opening, universal_bdp
 from viewer.paper.measure import measure_front, measure_side
 
-Seen = tuple[Report | None, Report | None]
+Seen = tuple[Observation | None, Observation | None]
 
 
 def measured(rig: Rig = RIG, place_m: tuple[float, float] = (0.0, 0.0)) -> Seen:
@@ -25,8 +25,8 @@ def measured(rig: Rig = RIG, place_m: tuple[float, float] = (0.0, 0.0)) -> Seen:
     first, second = silhouettes(opening(place_m), rig=rig)
     front, side = measure_front(first, box_around(first)), measure_side(second, box_around(second))
     return (
-        report(1, first, root_px=front.centre_px, measure=front),
-        report(2, second, root_px=side.centre_px, measure=side),
+        observation(first, root_px=front.centre_px, measure=front),
+        observation(second, root_px=side.centre_px, measure=side),
     )
 
 

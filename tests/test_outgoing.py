@@ -6,13 +6,14 @@ from typing import Any
 import msgspec
 import numpy as np
 import pytest
-from staging import NOBODY, PAPER, RIG, Stage, exact, report, silhouettes, standing
+from staging import NOBODY, PAPER, RIG, Stage, changed, exact, report, silhouettes, standing
 
 from calibration.gate import moved_cameras, rig_agreement, silhouette_motion
 from common.body.proportions import stature
 from common.bus.instant import Instant
-from common.bus.messages import Agreement, Lifting, Report
+from common.bus.messages import Agreement, Lifting, View
 from common.method import DEFAULT
+from common.raster.silhouette_report import pack
 from common.rig.camera import project
 from integrator import outgoing
 from integrator.merge_state import State
@@ -27,7 +28,7 @@ LOST_FRAMES = 5
 FRONT, SIDE = silhouettes(standing())
 
 
-def seen(n: int, **said: Any) -> Report:
+def seen(n: int, **said: Any) -> View:
     """Of viewer n, with its own place of the navel."""
     given = {"frame": 10 + n, "captured_s": 2.0, "clock_s": 5.0 + n, "root_px": (70.0 + n, 50.0)}
     return report(n, (FRONT, SIDE)[n - 1], **{**given, **said})
@@ -111,7 +112,7 @@ def test_joints_that_the_only_picture_cuts_off_are_guessed(state: State) -> None
     """The lower half is outside; of two views the other may show it."""
     high = RIG.height // 2
     assert state.found is not None
-    cut = msgspec.structs.replace(seen(1, cut=True), height=high)
+    cut = changed(seen(1, cut=True), height=high)
     body = told(state, Instant((cut, None)))
     below = [place[1] > high for place in body.joints_px[0]]
     assert 2 < sum(below) < 12
@@ -244,7 +245,7 @@ def test_what_else_is_told_of_an_instant_is_what_the_state_knows(state: State) -
     assert told(known._replace(agreement=agreed)).agreement == agreed.told
     assert told(known._replace(agreement=agreed), Instant((None, seen(2)))).agreement is None
     half_s = [seen(1, captured_s=at_s) for at_s in (0.0, 0.5)]
-    moved = msgspec.structs.replace(half_s[1], silhouette=report(1, NOBODY).silhouette, area_px=90)
+    moved = changed(half_s[1], silhouette=pack(NOBODY), area_px=90)
     motion = silhouette_motion.init(2)
     for each in (half_s[0], moved):
         motion = silhouette_motion.step(
@@ -310,10 +311,12 @@ def test_only_the_view_that_is_alone_and_cut_says_what_is_outside(state: State) 
 
 def test_matches_of_a_stick_count_with_those_of_its_viewer() -> None:
     fit: Any = SimpleNamespace(matches=7)
-    one: Any = SimpleNamespace(matches=30, fit=fit)
+    one: Any = SimpleNamespace(search=SimpleNamespace(matches=30), stick=fit)
     assert outgoing._matches(one) == 37
-    one.fit = None
+    one.stick = None
     assert outgoing._matches(one) == 30
+    one.search = None
+    assert outgoing._matches(one) == 0
 
 
 @pytest.mark.parametrize(("rate_hz", "frames"), [(15.0, 5), (30.0, 10), (10.0, 3), (1.0, 1)])

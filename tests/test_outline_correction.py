@@ -6,7 +6,7 @@ import pytest
 from test_body_region import true_landmarks, without
 from test_own_landmarks import acted, nobody, seen
 
-from common.bus.messages import Landmarks
+from common.body.observation import Landmarks
 from common.raster.similarity import Mask
 from viewer.room.outline_correction import _covered, _distance_2, _far_share, corrected
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from common.body.body import JOINT_NAMES
-from common.bus.messages import Box, Landmarks
+from common.body.observation import Box, Landmarks
 from viewer.landmarks.outside_source import nearest_landmarks
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from common.body.body import JOINT_NAMES
-from common.bus.messages import Box, Landmarks
+from common.body.observation import Box, Landmarks
 from common.raster.similarity import Mask
 from common.rig.camera import project
 from common.video.pictures import Image

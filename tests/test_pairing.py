@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from common.bus import clock
 from common.bus.clock import Exchange
 from common.bus.instant import Instant
-from common.bus.messages import Report, ViewerNumber
+from common.bus.messages import View, ViewerNumber
 from integrator.hearing.subscriber import OVERDUE_PERIODS
 from integrator.pairing import QUEUE, State, away, begin, end, init, overdue, step
 
@@ -20,21 +20,19 @@ PERIOD_S = 1 / 15
 
 def report(
     viewer: ViewerNumber, captured_s: float, frame: int = 0, next_s: float | None = None
-) -> Report:
-    return Report(
+) -> View:
+    return View(
         viewer=viewer,
         frame=frame,
         captured_s=captured_s,
         clock_s=captured_s,
         width=8,
         height=1,
-        silhouette=b"\0",
-        box=None,
         next_s=next_s,
     )
 
 
-def heard(state: State, reports: Sequence[Report]) -> tuple[State, list[Instant]]:
+def heard(state: State, reports: Sequence[View]) -> tuple[State, list[Instant]]:
     pairs: list[Instant] = []
     for one in reports:
         state, more = step(state, one)
@@ -218,12 +216,12 @@ def test_a_frame_that_is_known_to_be_missing_is_not_waited_for() -> None:
 
 
 @st.composite
-def talks(draw: st.DrawFn) -> tuple[list[Report], list[Report]]:
+def talks(draw: st.DrawFn) -> tuple[list[View], list[View]]:
     """Two viewers with jitter of 45 % of a period, lost frames and a shift between them.
 
     Some know when their next frame is taken.
     """
-    both: list[list[Report]] = []
+    both: list[list[View]] = []
     for viewer in (1, 2):
         shift = draw(st.floats(-0.5, 0.5))
         frames = sorted(draw(st.sets(st.integers(0, 20))))
@@ -239,7 +237,7 @@ def talks(draw: st.DrawFn) -> tuple[list[Report], list[Report]]:
 
 
 @st.composite
-def interleaved(draw: st.DrawFn) -> tuple[list[Report], list[Report]]:
+def interleaved(draw: st.DrawFn) -> tuple[list[View], list[View]]:
     """The same talk as heard in two ways."""
     first, second = draw(talks())
     ways = []
@@ -252,7 +250,7 @@ def interleaved(draw: st.DrawFn) -> tuple[list[Report], list[Report]]:
 
 @given(interleaved())
 def test_what_goes_out_does_not_depend_on_how_the_viewers_are_interleaved(
-    ways: tuple[list[Report], list[Report]],
+    ways: tuple[list[View], list[View]],
 ) -> None:
     ends = []
     for way in ways:
@@ -264,7 +262,7 @@ def test_what_goes_out_does_not_depend_on_how_the_viewers_are_interleaved(
 
 @given(talks(), st.floats(0.0, 3.0))
 def test_every_report_goes_out_once_in_the_order_of_time_or_is_counted(
-    talk: tuple[list[Report], list[Report]], wait_s: float
+    talk: tuple[list[View], list[View]], wait_s: float
 ) -> None:
     """Even where reports are called overdue: nothing is lost without a count."""
     state, pairs = init(1.0), []
@@ -287,7 +285,7 @@ def test_every_report_goes_out_once_in_the_order_of_time_or_is_counted(
 
 
 @st.composite
-def talks_of_three(draw: st.DrawFn) -> list[list[Report]]:
+def talks_of_three(draw: st.DrawFn) -> list[list[View]]:
     """What three viewers say, of cameras that do not run in step and miss frames."""
     said = []
     for viewer in (1, 2, 3):
@@ -304,7 +302,7 @@ def talks_of_three(draw: st.DrawFn) -> list[list[Report]]:
     return said
 
 
-def heard_as(said: list[list[Report]], turns: Sequence[int]) -> tuple[State, list[Instant]]:
+def heard_as(said: list[list[View]], turns: Sequence[int]) -> tuple[State, list[Instant]]:
     """What three viewers say, each in turn, to the end."""
     speakers = [iter(own) for own in said]
     state, found = heard(init(1.0, (1, 2, 3), cameras=3), [next(speakers[n]) for n in turns])
@@ -314,13 +312,13 @@ def heard_as(said: list[list[Report]], turns: Sequence[int]) -> tuple[State, lis
     return state, found
 
 
-def turns_of(said: list[list[Report]]) -> list[int]:
+def turns_of(said: list[list[View]]) -> list[int]:
     return [n for n, own in enumerate(said) for _ in own]
 
 
 @given(talks_of_three(), st.data())
 def test_what_three_viewers_say_goes_out_alike_however_they_are_interleaved(
-    said: list[list[Report]], data: st.DataObject
+    said: list[list[View]], data: st.DataObject
 ) -> None:
     ways = [heard_as(said, data.draw(st.permutations(turns_of(said)))) for _ in range(2)]
     assert ways[0][1] == ways[1][1]
@@ -329,7 +327,7 @@ def test_what_three_viewers_say_goes_out_alike_however_they_are_interleaved(
 
 @given(talks_of_three(), st.data(), st.floats(0.0, 3.0))
 def test_every_report_of_three_viewers_is_in_one_instant_or_counted(
-    said: list[list[Report]], data: st.DataObject, wait_s: float
+    said: list[list[View]], data: st.DataObject, wait_s: float
 ) -> None:
     """An instant lies within half a period of each of its views, also where some are overdue."""
     speakers = [iter(own) for own in said]

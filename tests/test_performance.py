@@ -12,7 +12,7 @@ from spoiling import copied, refilmed
 from staging import PERIOD_S, RIG, report
 
 from common.bus.instant import Instant
-from common.bus.messages import Body, Guide, Report, ViewerNumber
+from common.bus.messages import Body, Guide, View, ViewerNumber
 from common.config.settings import Settings
 from common.method import DEFAULT, Mode
 from common.video.clip_facts import Clip, ClipView, Meta
@@ -140,7 +140,7 @@ def guided(monkeypatch: pytest.MonkeyPatch) -> list[tuple[int, int | None]]:
     """Every look of a viewer, without pictures: its state, and the frame of the guide it had."""
     given: list[tuple[int, int | None]] = []
 
-    def look(state: int, frame: CapturedFrame, guide: Guide | None) -> tuple[int, Report]:
+    def look(state: int, frame: CapturedFrame, guide: Guide | None) -> tuple[int, View]:
         given.append((state, None if guide is None else guide.frames[0]))
         seen = report(state // 100, frame=frame.index, captured_s=frame.captured_s)
         return state + 1, seen

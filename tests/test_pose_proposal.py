@@ -9,12 +9,12 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from staging import HEIGHT, RIG, WIDTH, Stage, Told, exact, report
+from staging import HEIGHT, RIG, WIDTH, Stage, Told, exact, observation
 
 from common.body.body import JOINT_NAMES, POSE_INDEX, Vector
+from common.body.observation import Landmarks
 from common.body.proportions import stature
 from common.bus.message_codec import decode, encode
-from common.bus.messages import Landmarks
 from common.config.settings import Settings
 from common.raster.similarity import Mask
 from integrator.proposal import landmark_look, pose_proposal
@@ -252,7 +252,7 @@ def test_a_probability_keeps_the_order_and_the_bounds() -> None:
 def test_where_landmarks_show_no_one_body_the_network_keeps_what_it_remembers() -> None:
     """No landmarks at all, or views that look apart."""
     kept: Any = "remembered"
-    bare = report(1), report(2)
+    bare = observation(), observation()
     assert pose_proposal._lifted(kept, bare, RIG, 1.75, 0.1) == (kept, None)
     assert pose_proposal._lifted(kept, (None, None), RIG, 1.75, 0.1) == (kept, None)
     places = [(80.0 + n, 60.0 + 2.0 * n) for n in range(15)]
@@ -260,7 +260,7 @@ def test_where_landmarks_show_no_one_body_the_network_keeps_what_it_remembers() 
         Landmarks(tuple((x + right_px, y) for x, y in places), (0.9,) * 15)
         for right_px in (0.0, 4000.0)
     )
-    apart = report(1, landmarks=here), report(2, landmarks=astray)
+    apart = observation(landmarks=here), observation(landmarks=astray)
     first, second = (landmark_look.shown_of(each) for each in apart)
     assert landmark_look.look((first, second), RIG, 1.75, 0.1) is None
     assert pose_proposal._lifted(kept, apart, RIG, 1.75, 0.1) == (kept, None)

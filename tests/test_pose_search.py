@@ -9,8 +9,9 @@ from posing import BODY, SIZE, box_around, picture, posed, view
 
 from common.body.body import POSE_INDEX, rest_pose
 from common.body.kinematics import ALL_LIMBS
+from common.body.observation import Facing, Observation, Search
 from common.body.proportions import body_vector, stature, thesis_bdp
-from common.bus.messages import Facing, Guide, Report, ViewerNumber
+from common.bus.messages import Guide, ViewerNumber
 from common.config.part_settings import SearchSettings
 from common.method import DEFAULT, PAPER, Method
 from common.raster.kernel import CENTRE_X, CENTRE_Y, FOCAL_X
@@ -45,11 +46,19 @@ def state_of(viewer: ViewerNumber = 1, method: Method = PAPER) -> State:
     return init(viewer, None, SearchSettings(), method)
 
 
-def report_of(mask: Mask, viewer: ViewerNumber) -> Report:
-    return Report(
-        frame=3, captured_s=0.2, clock_s=0.2, viewer=viewer, width=SIZE[0], height=SIZE[1],
-        silhouette=pack(mask), box=box_around(mask),
-    )  # fmt: skip
+def seen_as(mask: Mask) -> Observation:
+    return Observation(
+        width=SIZE[0],
+        height=SIZE[1],
+        silhouette=pack(mask),
+        box=box_around(mask),
+        area_px=int(mask.sum()),
+    )
+
+
+def searched(person: Observation) -> Search:
+    assert person.search is not None
+    return person.search
 
 
 def guide_of(**changed: Any) -> Guide:
@@ -91,7 +100,7 @@ def test_a_body_of_which_nothing_is_known_stands_in_its_box(known: bool) -> None
     mask = stands_in((20, 100), (50, 60))
     bdp = thesis_bdp(2.0) if known else thesis_bdp(1.0)
     guide = guide_of(bdp=bdp, status="lost", facing=("flank", "facade")) if known else None
-    model = _at_rest(state_of(), mask, report_of(mask, 1), guide)
+    model = _at_rest(state_of(), mask, seen_as(mask), guide)
     middle = (800 * 55.0 + 400 * 80.0) / 1200
     assert model.view[CENTRE_X] == pytest.approx(middle)
     assert model.view[CENTRE_Y] == pytest.approx(100.0 - 80.0 * 98 / 175)
@@ -110,7 +119,7 @@ def test_a_resting_body_is_turned_as_its_view_takes_itself_to_see_it(
 ) -> None:
     mask = stands_in((20, 100), (50, 60))
     state = state_of(viewer)._replace(vote=facing)
-    model = _at_rest(state, mask, report_of(mask, viewer), None)
+    model = _at_rest(state, mask, seen_as(mask), None)
     assert model.pose[POSE_INDEX["torso_y"]] == yaw_deg
 
 
@@ -228,22 +237,24 @@ def test_the_flank_searches_the_near_side_first(
 def test_a_step_finds_the_arms_of_the_facade_where_the_body_stands() -> None:
     """Nothing known, then a guide: names of the facade, the place, and what was matched."""
     mask = picture(posed(r_shoulder_z=60.0, l_shoulder_z=290.0), root_px=(83.0, 62.0))
-    state, first = step(state_of(), report_of(mask, 1), mask, None)
-    assert set(first.angles_deg) == set(FACADE_ANGLES)
-    assert first.angles_deg["r_shoulder_z"] == pytest.approx(60.0, abs=6.0)
-    assert first.angles_deg["l_shoulder_z"] == pytest.approx(290.0, abs=6.0)
+    state, first = step(state_of(), seen_as(mask), mask, None)
+    assert set(searched(first).angles_deg) == set(FACADE_ANGLES)
+    assert searched(first).angles_deg["r_shoulder_z"] == pytest.approx(60.0, abs=6.0)
+    assert searched(first).angles_deg["l_shoulder_z"] == pytest.approx(290.0, abs=6.0)
     assert (first.upper_body_px, first.vote, first.thresholds_px) == (0.0, "facade", (0.0, 0.0))
-    assert first.matches > 20
-    assert first.score > 0.6
-    assert not first.squatting
+    assert searched(first).matches > 20
+    assert searched(first).score > 0.6
+    assert not searched(first).squatting
     guide = guide_of(root_px=((81.0, 63.0), (0.0, 0.0)))
-    state, second = step(state, report_of(mask, 1), mask, guide)
-    assert second.root_px == (83.0, 62.0)
+    state, second = step(state, seen_as(mask), mask, guide)
+    assert searched(second).root_px == (83.0, 62.0)
     assert second.upper_body_px > 0.0
     assert second.thresholds_px == thresholds_px(BDP, 100.0)
     assert state.found is not None
     assert state.found.angles_deg == {
-        name: value for name, value in second.angles_deg.items() if name not in SQUAT_ANGLES
+        name: value
+        for name, value in searched(second).angles_deg.items()
+        if name not in SQUAT_ANGLES
     }
 
 
@@ -260,8 +271,8 @@ def test_a_step_searches_as_the_guide_says_that_its_view_faces(
 ) -> None:
     mask = picture(posed(), viewer)
     guide = guide_of(facing=facing)
-    _, report = step(state_of(viewer), report_of(mask, viewer), mask, guide)
-    assert set(report.angles_deg) == set(names)
+    _, report = step(state_of(viewer), seen_as(mask), mask, guide)
+    assert set(searched(report).angles_deg) == set(names)
 
 
 @pytest.mark.parametrize(("method", "limbs"), [(PAPER, ALL_LIMBS), (DEFAULT, UPRIGHT)])
@@ -277,5 +288,5 @@ def test_what_is_shifted_is_the_methods(
 
     monkeypatch.setattr(pose_search, "located", located)
     mask = picture(posed())
-    step(state_of(1, method), report_of(mask, 1), mask, guide_of())
+    step(state_of(1, method), seen_as(mask), mask, guide_of())
     assert asked == [limbs]

@@ -6,7 +6,8 @@ from posing import BODY, SIZE, angle, laid_over, picture, posed, view
 
 from common.body.body import POSE_INDEX
 from common.body.kinematics import ARM_LIMBS, LEG_LIMBS
-from common.bus.messages import Facing, ViewerNumber
+from common.body.observation import Facing
+from common.bus.messages import ViewerNumber
 from common.raster.kernel import draw_body
 from common.rig.camera import paper_rig
 from viewer.paper import posed_model

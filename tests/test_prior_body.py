@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from posing import posed
-from rolling import BODY, ROLLED, outlines, told
-from staging import PERSON, RIG, report, silhouettes, standing
+from rolling import BODY, ROLLED, outlines, person_in
+from staging import PERSON, RIG, observation, silhouettes, standing
 
 from common.body.body import Vector
 from common.body.proportions import stature, thesis_bdp
@@ -19,7 +19,7 @@ def test_the_prior_is_as_high_as_the_silhouettes(views: tuple[int, ...], stature
     pose[1] *= stature_m / 1.75
     both = silhouettes(pose, thesis_bdp(stature_m))
     roots = [(80.0, 60.0 + (1.0 - pose[1]) * 50.0)] * 2
-    seen = [report(n + 1, both[n], root_px=roots[n]) if n in views else None for n in (0, 1)]
+    seen = [observation(both[n], root_px=roots[n]) if n in views else None for n in (0, 1)]
     body = prior(RIG, (seen[0], seen[1]))
     assert stature(body) == pytest.approx(stature_m, abs=0.06)
     assert body.torso.height / stature(body) == pytest.approx(52 / 175)
@@ -32,7 +32,7 @@ def test_one_view_alone_measures_whoever_stands_nearer_or_farther_alike(
 ) -> None:
     """T4: the floor, which the camera knows, tells how far away they are."""
     mask = silhouettes(standing(place_m))[view]
-    told_of = report(1 if view == 0 else 2, mask, root_px=(80.0, 60.0))
+    told_of = observation(mask, root_px=(80.0, 60.0))
     found = prior(RIG, (told_of, None) if view == 0 else (None, told_of))
     assert stature(found) == pytest.approx(stature(PERSON), abs=0.06)
 
@@ -42,7 +42,7 @@ def test_a_prior_is_somebody(rows: int, stature_m: float) -> None:
     """0.8 to 2.3 m: what is beyond is not the whole person."""
     mask = np.zeros((120, 160), np.bool_)
     mask[100 - rows : 100, 70:90] = True
-    body = prior(RIG, (report(1, mask, root_px=(80.0, 60.0)), None))
+    body = prior(RIG, (observation(mask, root_px=(80.0, 60.0)), None))
     assert stature(body) == pytest.approx(stature_m)
 
 
@@ -58,7 +58,7 @@ def test_the_crown_tells_the_stature_where_the_outline_goes_on_below_the_feet(
         end = len(mask) if n in to_the_border else lowest + 14
         mask[lowest - 10 : end, middle - 15 : middle + 15] = True
         spoilt.append(mask)
-    found = prior(ROLLED, (told(1, spoilt[0]), told(2, spoilt[1])))
+    found = prior(ROLLED, (person_in(spoilt[0]), person_in(spoilt[1])))
     assert stature(found) == pytest.approx(stature(BODY), abs=0.05)
 
 
@@ -67,7 +67,7 @@ def test_what_goes_on_above_a_picture_is_no_crown() -> None:
     first, second = outlines(_stretched())
     columns = np.flatnonzero(first[: first.any(axis=1).argmax() + 5].any(axis=0))
     first[: first.any(axis=1).argmax() + 5, columns[0] : columns[-1]] = True
-    found = prior(ROLLED, (told(1, first), told(2, second)))
+    found = prior(ROLLED, (person_in(first), person_in(second)))
     assert stature(found) == pytest.approx(stature(BODY), abs=0.08)
 
 
@@ -97,6 +97,6 @@ def test_a_crown_at_the_border_of_a_picture_may_go_on_beyond_it(
     one[row, column] = one[100, 80] = True
     other[30:100, 70:80] = True
     other[30, 71:80] = False
-    seen = told(1, one), told(2, other)
+    seen = person_in(one), person_in(other)
     crown_m = _crown_m(RIG, seen, np.array([0.0, 1.0, 0.0]))
     assert np.isfinite(crown_m) == is_known

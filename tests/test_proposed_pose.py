@@ -5,13 +5,13 @@ import math
 import msgspec
 import numpy as np
 import pytest
-from rolling import BODY, ROLLED, on_one_leg, outlines, told
+from rolling import BODY, ROLLED, on_one_leg, outlines, person_in
 
 from common.body.body import JOINT_NAMES, POSE_INDEX, Vector
 from common.body.kinematics import joints
+from common.body.observation import Landmarks, Observation
 from common.body.proportions import body_vector, stature
 from common.bus.instant import Seen
-from common.bus.messages import Landmarks, Report
 from common.method import DEFAULT
 from common.rig.camera import Camera, project
 from integrator.fit import proposed_pose
@@ -32,11 +32,11 @@ from integrator.proposal.pose_proposal import (
 )
 
 
-def glaring() -> tuple[Report, Report]:
+def glaring() -> tuple[Observation, Observation]:
     """Glare on the floor, as large as a trunk, that one view alone shows."""
     first, second = outlines(on_one_leg())
     first[200:240, 0:40] = True
-    return told(1, first), told(2, second)
+    return person_in(first), person_in(second)
 
 
 def proposing(monkeypatch: pytest.MonkeyPatch, glared: float, clean: float) -> None:
@@ -68,7 +68,7 @@ def test_what_one_view_alone_shows_goes_where_the_network_is_unsure_with_it_and_
     assert found.confidence == pytest.approx(clean if cleared else glared)
 
 
-def shown(report: Report, camera: Camera, sure: float) -> Report:
+def shown(report: Observation, camera: Camera, sure: float) -> Observation:
     """With landmarks of that pose, so sure."""
     places_px = project(camera, joints(body_vector(BODY), on_one_leg())).tolist()
     landmarks = Landmarks(tuple((x, y) for x, y in places_px), (sure,) * len(JOINT_NAMES))
@@ -87,8 +87,8 @@ def test_what_both_views_showed_outweighs_what_one_lifts_until_it_is_old(
     """A recurrent network of outlines remembers the depths that the lost camera showed."""
     lifting(monkeypatch, joints(body_vector(BODY), on_one_leg())[AT] * [1.0, 2.0, 1.0])
     outline, other = outlines(on_one_leg())
-    first = shown(told(1, outline), ROLLED.cameras[0], 0.9)
-    second = shown(told(2, other), ROLLED.cameras[1], 0.9)
+    first = shown(person_in(outline), ROLLED.cameras[0], 0.9)
+    second = shown(person_in(other), ROLLED.cameras[1], 0.9)
     both = pose_proposal.step(None, BODY, ROLLED, (first, second), 1 / 15).memory
     stretched_m = []
     for alone_s in (0.0, 1.0, 4.0, 30.0, math.inf):
@@ -104,7 +104,7 @@ def test_where_one_view_is_alone_the_person_stands_between_what_outline_and_land
 ) -> None:
     """Outlines place people by their feet, landmarks by their size: both err, but not alike."""
     outline, _ = outlines(on_one_leg())
-    first = shown(told(1, outline), ROLLED.cameras[0], 0.9)
+    first = shown(person_in(outline), ROLLED.cameras[0], 0.9)
     alone = pose_proposal.step(None, BODY, ROLLED, (first, None), 1 / 15, lifts=False).joints_m
     beyond_m = np.array([0.1, 0.0, -0.6])
     lifting(monkeypatch, alone + beyond_m)
@@ -164,7 +164,7 @@ def networks(monkeypatch: pytest.MonkeyPatch) -> Networks:
 def both_shown(first: bool = True, second: bool = True) -> Seen:
     made = zip((1, 2), outlines(on_one_leg()), ROLLED.cameras, (first, second), strict=True)
     one, other = (
-        shown(told(n, mask), camera, 0.9) if there else None for n, mask, camera, there in made
+        shown(person_in(mask), camera, 0.9) if there else None for n, mask, camera, there in made
     )
     return one, other
 
@@ -188,11 +188,11 @@ def test_landmarks_are_lifted_in_beside_one_view_and_for_who_leans_far(networks:
         assert np.allclose(found.joints_m, plain) != lifts
         assert found.memory.lifting is not None
         assert found.memory.alone_s == (math.inf if None in seen else 0.0)
-    told_nothing = (told(1, outlines(on_one_leg())[0]), None)
+    told_nothing = (person_in(outlines(on_one_leg())[0]), None)
     found = pose_proposal.step(None, BODY, ROLLED, told_nothing, 1 / 15)
     assert np.allclose(found.joints_m, plain)
     assert found.memory.lifting is None
-    half = (both_shown()[0], told(2, outlines(on_one_leg())[1]))
+    half = (both_shown()[0], person_in(outlines(on_one_leg())[1]))
     assert pose_proposal.step(None, BODY, ROLLED, half, 1 / 15).memory.lifting is not None
 
 
@@ -235,7 +235,7 @@ def test_joints_lie_beside_the_cylinders_where_they_are_free(
     ends = []
     for free in (True, False):
         method = msgspec.structs.replace(DEFAULT, free_joints=free)
-        seen = (told(1, outlines(on_one_leg())[0]), told(2, outlines(on_one_leg())[1]))
+        seen = (person_in(outlines(on_one_leg())[0]), person_in(outlines(on_one_leg())[1]))
         found = proposed_pose.step(Before(), Sighting(BODY, ROLLED, seen, (0, 1), 1 / 15, method))
         ends.append(np.allclose(found.joints_m, joints(body_vector(BODY), found.pose)))
     assert ends == [False, True]

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from common.bus.control_messages import Ended, Pulse
 from common.bus.message_codec import TOPICS
-from common.bus.messages import Report
+from common.bus.messages import View
 from common.bus.rate import WINDOW, Pace, silent, wait_until
 
 PERIOD_S = 1 / 15
@@ -106,7 +106,7 @@ def test_waiting_ends_when_it_is_stopped() -> None:
 
 def test_silence_follows_from_the_rate_of_the_topic() -> None:
     """A viewer at 15 Hz is silent after a third of a second, a pulse a second after five."""
-    report_hz, pulse_hz = TOPICS[Report].hz, TOPICS[Pulse].hz
+    report_hz, pulse_hz = TOPICS[View].hz, TOPICS[Pulse].hz
     assert not silent(report_hz, 10.0, 10.0 + 4.9 / 15)
     assert silent(report_hz, 10.0, 10.0 + 5.1 / 15)
     assert not silent(pulse_hz, 10.0, 14.9)

@@ -16,7 +16,7 @@ from common.body.body import ANGLES_IN_POSE, JOINT_NAMES, rest_pose
 from common.body.extremities import EXTREMITY_NAMES, extremities
 from common.body.kinematics import joints
 from common.body.proportions import body_vector, thesis_bdp
-from common.bus.messages import Body, Posture, Report
+from common.bus.messages import Body, Posture, View
 from common.config.settings import Settings
 from runtime.store.foxglove_scene import SCENE, time_of
 from runtime.store.recording import Head, RecordingError, read_recording, recording_to
@@ -45,7 +45,7 @@ def standing(frame: int) -> Body:
     )
 
 
-def said() -> list[Report | Body | Posture]:
+def said() -> list[View | Body | Posture]:
     empty = Body(frame=1, captured_s=1 / 15, clock_s=1 / 15, status="empty", views="none")
     named = Posture(frame=0, captured_s=0.0, clock_s=0.0, name="squat")
     return [report(1), report(2), standing(0), named, empty]

@@ -16,7 +16,7 @@ from rich.console import Console
 from staging import RIG, report
 
 from common.bus.control_messages import Cameras
-from common.bus.messages import Body, Message, Posture, Report, ViewerNumber
+from common.bus.messages import Body, Message, Posture, View, ViewerNumber
 from common.config.part_settings import BusSettings, PageSettings
 from common.config.settings import Settings
 from runtime.live.free_ports import free_settings
@@ -95,7 +95,7 @@ def test_all_that_was_said_is_said_again_in_its_order(run: Path) -> None:
     recording, bus = read_recording(run), LocalBus()
     few = recording._replace(reports=tuple(each[:9] for each in recording.reports))
     few = few._replace(bodies=recording.bodies[:9])
-    reports, bodies, postures = (bus.subscribe(kind) for kind in (Report, Body, Posture))
+    reports, bodies, postures = (bus.subscribe(kind) for kind in (View, Body, Posture))
     assert say(few, bus, speed=50.0) == 28
     heard = bodies.drain()
     assert [msgspec.structs.replace(b, clock_s=0.0) for b in heard] == [
@@ -150,7 +150,7 @@ def test_a_live_run_comes_back_byte_for_byte(clip: Path, tmp_path: Path) -> None
     assert facts["same"] == facts["bodies"] == len(open_run(tmp_path / "lived").poses["frame"])
 
 
-def said_at(viewer: ViewerNumber, frame: int, at_s: float) -> Report:
+def said_at(viewer: ViewerNumber, frame: int, at_s: float) -> View:
     return report(viewer, frame=frame, captured_s=at_s, clock_s=at_s)
 
 
@@ -167,7 +167,7 @@ def body_at(at_s: float, made_of: tuple[int, int], calibration: int = 0) -> Body
 
 
 def made_up(
-    first: list[Report], second: list[Report], bodies: list[Body], cameras: list[Cameras]
+    first: list[View], second: list[View], bodies: list[Body], cameras: list[Cameras]
 ) -> Recording:
     """Ten instants a second."""
     head = Head(
@@ -219,7 +219,7 @@ def test_messages_are_said_at_their_pace_with_the_clock_of_now(
     bus = InOrder()
     assert say(recording, bus, 2.0) == 4
     assert waits == pytest.approx([100.0, 100.05, 100.05, 100.15])
-    assert [type(one).__name__ for one in bus.said] == ["Report", "Report", "Body", "Report"]
+    assert [type(one).__name__ for one in bus.said] == ["View", "View", "Body", "View"]
     assert [getattr(one, "clock_s", None) for one in bus.said] == [100.0] * 4
     assert [getattr(one, "captured_s", None) for one in bus.said] == [7.0, 7.1, 7.1, 7.3]
     assert say(made_up([], [], [], []), bus, 2.0) == 0

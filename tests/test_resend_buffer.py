@@ -3,16 +3,16 @@
 import msgspec
 
 from common.bus.inbox import Alive
-from common.bus.messages import Report
+from common.bus.messages import View
 from viewer.resend_buffer import HUB, MOST, ResendBuffer
 
 WENT, CAME = Alive(HUB, alive=False), Alive(HUB, alive=True)
 
 
-def report(frame: int) -> Report:
+def report(frame: int) -> View:
     fields = {"viewer": 1, "width": 8, "height": 1, "silhouette": b"\0", "box": None}
     times = {"frame": frame, "captured_s": frame / 15, "clock_s": 0.0}
-    return msgspec.convert({**fields, **times}, Report)
+    return msgspec.convert({**fields, **times}, View)
 
 
 def spoken(frames: int) -> ResendBuffer:

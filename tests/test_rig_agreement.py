@@ -1,11 +1,13 @@
 """How far a rig is believed, by exact landmarks of somebody who stands and turns before another."""
 
 import math
+from typing import Any
 
 import msgspec
 import numpy as np
 import pytest
-from staging import RIG, report, standing
+from staging import RIG, person_of, report, standing
+from staging import changed as otherwise
 
 from calibration.gate import rig_agreement
 from calibration.gate.rig_agreement import (
@@ -19,8 +21,10 @@ from calibration.gate.rig_agreement import (
 from calibration.gate.rig_fault import exchanged_rig
 from common.body.body import JOINT_NAMES, OTHER_SIDE, POSE_INDEX
 from common.body.kinematics import joints
+from common.body.observation import Box, Landmarks
 from common.body.proportions import body_vector, thesis_bdp
-from common.bus.messages import Agreement, Landmarks, Report, ViewerNumber
+from common.bus.instant import TwoViews
+from common.bus.messages import Agreement, View, ViewerNumber
 from common.rig.camera import Rig, as_matrix, as_row, centre, project
 
 BODY = body_vector(thesis_bdp(1.75))
@@ -44,7 +48,7 @@ def seen(
     swaps: bool = False,
     sure: float = 0.9,
     joints_m: np.ndarray | None = None,
-) -> Report:
+) -> View:
     """Somebody who stands and goes about, or whose joints (15, 3) are given."""
     if joints_m is None:
         joints_m = np.asarray(joints(BODY, standing((0.3 * math.sin(n), 0.2 * math.cos(n)))))
@@ -52,13 +56,19 @@ def seen(
     places = places[OTHER_SIDE] if swaps else places
     facing = (0.0, 90.0)[viewer - 1]
     told = Landmarks(tuple((x, y) for x, y in places.tolist()), (sure,) * 15, facing, 0.95)
-    return report(viewer, frame=n, captured_s=0.2 * n, landmarks=told)
+    return report(viewer, frame=n, captured_s=0.2 * n, landmarks=told, box=Box(0, 1, 0, 1))
+
+
+def agreed(state: State, rig: Rig, views: TwoViews) -> State:
+    first, second = (None if view is None else view.person for view in views)
+    assert views[0] is not None
+    return rig_agreement.step(state, rig, (first, second), views[0].captured_s)
 
 
 def after(rig: Rig, instants: int = 20, *, swaps: bool = False) -> State:
     state = State()
     for n in range(instants):
-        state = rig_agreement.step(state, rig, (seen(1, n), seen(2, n, swaps=swaps)))
+        state = agreed(state, rig, (seen(1, n), seen(2, n, swaps=swaps)))
     return state
 
 
@@ -89,7 +99,7 @@ def test_a_copy_of_one_view_is_not_believed(copied: ViewerNumber) -> None:
     for n in range(20):
         still = np.asarray(joints(BODY, standing()))
         copies = (seen(copied, n, joints_m=still), seen(copied, n, joints_m=still))
-        state = rig_agreement.step(state, RIG, copies)
+        state = agreed(state, RIG, copies)
     assert state.told is not None
     assert state.told.apart_mm < 60.0
     assert state.told.facing_deg == pytest.approx(90.0, abs=1.0)
@@ -109,7 +119,7 @@ def after_swinging(late: float) -> Agreement:
     state = State()
     for n in range(40):
         pair = (seen(1, n, joints_m=swinging(n)), seen(2, n, joints_m=swinging(n, late)))
-        state = rig_agreement.step(state, RIG, pair)
+        state = agreed(state, RIG, pair)
     assert state.told is not None
     return state.told
 
@@ -140,8 +150,8 @@ def test_nothing_is_told_of_a_moment_of_one_view_or_of_unsure_landmarks() -> Non
     assert after(RIG, FEWEST).told is not None
     state = State()
     for n in range(20):
-        state = rig_agreement.step(state, RIG, (seen(1, n), None))
-        state = rig_agreement.step(state, RIG, (seen(1, n), seen(2, n, sure=0.3)))
+        state = agreed(state, RIG, (seen(1, n), None))
+        state = agreed(state, RIG, (seen(1, n), seen(2, n, sure=0.3)))
     assert state == State()
 
 
@@ -149,7 +159,7 @@ def test_what_is_kept_is_bounded_and_old_instants_are_forgotten() -> None:
     state = after(turned(RIG, 10.0), 50)
     assert len(state.samples) == len(state.facings_deg) == SAMPLES
     for n in range(50, 50 + SAMPLES):
-        state = rig_agreement.step(state, RIG, (seen(1, n), seen(2, n)))
+        state = agreed(state, RIG, (seen(1, n), seen(2, n)))
     assert state.told is not None
     assert state.told.believed == 1.0
 
@@ -159,7 +169,7 @@ def test_a_rig_that_becomes_wrong_is_contradicted_within_two_seconds() -> None:
     assert state.told is not None
     assert state.told.believed == 1.0
     for n in range(40, 50):
-        state = rig_agreement.step(state, turned(RIG, 10.0), (seen(1, n), seen(2, n)))
+        state = agreed(state, turned(RIG, 10.0), (seen(1, n), seen(2, n)))
     assert state.told is not None
     assert state.told.believed < 0.2
     assert len(state.samples) < 40
@@ -172,7 +182,7 @@ def test_who_lies_does_not_make_a_right_rig_doubted() -> None:
     before = state.told
     for n in range(20, 20 + 2 * SAMPLES):
         pair = (seen(1, n, joints_m=lying), seen(2, n, joints_m=lying))
-        state = rig_agreement.step(state, RIG, pair)
+        state = agreed(state, RIG, pair)
     assert state.told == before
     assert before is not None
     assert before.believed == 1.0
@@ -189,7 +199,7 @@ def test_who_stands_on_one_leg_for_long_does_not_make_a_right_rig_doubted() -> N
     assert np.ptp(ankles_m) > 0.25
     for n in range(2 * SAMPLES):
         pair = (seen(1, n, joints_m=joints_m), seen(2, n, joints_m=joints_m, swaps=n % 3 == 0))
-        state = rig_agreement.step(state, RIG, pair)
+        state = agreed(state, RIG, pair)
     assert state.told is not None
     assert abs(state.told.soles_mm) < 30.0
     assert state.told.believed == 1.0
@@ -256,7 +266,7 @@ def test_joints_that_one_side_alone_shows_keep_their_gaps() -> None:
 
 def shown(viewer: ViewerNumber) -> Landmarks:
     """Joints of which none is exactly where the other view's sight line passes."""
-    told = seen(viewer, 3).landmarks
+    told = person_of(seen(viewer, 3)).landmarks
     assert told is not None
     return msgspec.structs.replace(
         told, joints_px=tuple((x, y + 2.0 * viewer) for x, y in told.joints_px)
@@ -300,7 +310,7 @@ def test_the_views_are_turned_against_each_other_by_the_rays_to_their_cameras() 
     place = np.array([centre(first)[0] - 1.5, 1.0, centre(first)[2] - 1.5])
     moved = -np.array(second.R) @ (place - np.array([3.0, -0.4, 0.0]))
     cameras = (first, msgspec.structs.replace(second, t=as_row(moved)))
-    told = seen(1, 0).landmarks
+    told = person_of(seen(1, 0)).landmarks
     assert told is not None
 
     def facing(deg: float, sure: float = 0.9) -> Landmarks:
@@ -335,8 +345,8 @@ def test_the_lower_ankle_is_lower_whichever_sides_a_view_has_exchanged() -> None
     joints_m = np.asarray(joints(BODY, legs))
     ankles_m = joints_m[[n for n, name in enumerate(JOINT_NAMES) if name.endswith("ankle")], 1]
     for swaps in (False, True):
-        one = seen(1, 0, joints_m=joints_m).landmarks
-        other = seen(2, 0, joints_m=joints_m, swaps=swaps).landmarks
+        one = person_of(seen(1, 0, joints_m=joints_m)).landmarks
+        other = person_of(seen(2, 0, joints_m=joints_m, swaps=swaps)).landmarks
         assert one is not None
         assert other is not None
         found_m = rig_agreement._lower_ankle_m(RIG.cameras, one, other)
@@ -346,8 +356,8 @@ def test_the_lower_ankle_is_lower_whichever_sides_a_view_has_exchanged() -> None
 def test_joints_gaps_are_those_of_the_sides_that_meet_better() -> None:
     """An arm is raised: exchanged sight lines miss each other by much more."""
     joints_m = np.asarray(joints(BODY, standing((0.2, 0.1), r_shoulder_z=100.0)))
-    one, other = (seen(n, 0, joints_m=joints_m).landmarks for n in (1, 2))
-    swapped = seen(2, 0, joints_m=joints_m, swaps=True).landmarks
+    one, other = (person_of(seen(n, 0, joints_m=joints_m)).landmarks for n in (1, 2))
+    swapped = person_of(seen(2, 0, joints_m=joints_m, swaps=True)).landmarks
     assert one is not None
     assert other is not None
     assert swapped is not None
@@ -357,25 +367,21 @@ def test_joints_gaps_are_those_of_the_sides_that_meet_better() -> None:
 
 
 def test_an_instant_counts_if_it_is_late_enough_and_both_views_are_sure_of_a_whole_person() -> None:
-    state = rig_agreement.step(State(), RIG, (seen(1, 0), seen(2, 0)))
+    state = agreed(State(), RIG, (seen(1, 0), seen(2, 0)))
     assert (len(state.samples), state.last_s) == (1, 0.0)
 
-    def told(captured_s: float, **changed: object) -> int:
-        pair = [
-            msgspec.structs.replace(
-                seen(n, 0), captured_s=captured_s, **(changed if n == 2 else {})
-            )
-            for n in (1, 2)
-        ]
-        return len(rig_agreement.step(state, RIG, (pair[0], pair[1])).samples)
+    def told(captured_s: float, **changed: Any) -> int:
+        pair = [msgspec.structs.replace(seen(n, 0), captured_s=captured_s) for n in (1, 2)]
+        pair[1] = otherwise(pair[1], **changed)
+        return len(agreed(state, RIG, (pair[0], pair[1])).samples)
 
     assert told(0.149) == 1
     assert told(0.15) == 2
     assert told(-0.05) == 2, "a clip that begins anew"
     assert told(0.3, cut=True) == 1
     assert told(0.3, landmarks=None) == 1
-    assert told(0.3, landmarks=seen(2, 0, sure=0.59).landmarks) == 1
-    assert told(0.3, landmarks=seen(2, 0, sure=0.61).landmarks) == 2
+    assert told(0.3, landmarks=person_of(seen(2, 0, sure=0.59)).landmarks) == 1
+    assert told(0.3, landmarks=person_of(seen(2, 0, sure=0.61)).landmarks) == 2
 
 
 def test_a_sample_is_points_then_joints_then_the_ankle() -> None:

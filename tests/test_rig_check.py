@@ -8,7 +8,8 @@ from staging import RIG, report
 
 from calibration.gate.rig_trust import Trust
 from calibration.tracks.lateness import UNSEEN, Clock
-from common.bus.messages import Body, Box, Landmarks, Report, ViewerNumber
+from common.body.observation import Box, Landmarks
+from common.bus.messages import Body, View, ViewerNumber
 from common.video.clip_facts import Clip, ClipView, Meta
 from runtime.offline import rig_check
 from runtime.offline.rig_check import (
@@ -119,7 +120,7 @@ def test_bodies_of_a_view_that_is_late_by_nobody_knows_how_much_are_hardly_belie
 LANDMARKS = Landmarks(tuple((40.0 + 3 * n, 100.0 - 5 * n) for n in range(15)), (0.8,) * 15, 30.0)
 
 
-def seen_at(viewer: ViewerNumber, moment_s: float) -> Report:
+def seen_at(viewer: ViewerNumber, moment_s: float) -> View:
     """A report of somebody upright, at that moment."""
     box = Box(left=30, right=90, top=10, bottom=110)
     return report(viewer, captured_s=moment_s, box=box, landmarks=LANDMARKS)

@@ -13,7 +13,8 @@ from staging import report
 
 from calibration.person.rig_quality import PersonCalibration, Quality
 from calibration.tracks.lateness import Clock
-from common.bus.messages import Box, Landmarks, Report, ViewerNumber
+from common.body.observation import Box, Landmarks
+from common.bus.messages import View, ViewerNumber
 from common.config.part_settings import BodySettings, SilhouetteSettings
 from common.config.settings import Settings
 from common.method import METHODS, Method
@@ -64,7 +65,7 @@ QUALITY = Quality((), 1.75, 40, 12.0, 1.0, (0.5,), (0.1,))
 TURNED = paper_rig((160, 120), (200.0, 200.0), (4.0, 4.0))
 
 
-def two_views(**changed: Any) -> Clip:
+def first_two(**changed: Any) -> Clip:
     """Two films of one size; view 2 has twice the rate, and every second frame is looked at."""
     first = ClipView(1, "a.avi", (320, 240), (160, 120), 15.0, 60)
     second = ClipView(2, "b.avi", (320, 240), (160, 120), 30.0, 120)
@@ -104,7 +105,7 @@ def test_a_clip_of_two_films_is_calibrated_by_its_person_and_their_clock(
 ) -> None:
     looks = Looks(monkeypatch, Clock(0.3))
     looks.late_s = 0.25
-    looked = by(two_views(), Settings(body=BodySettings(stature_m=1.9)))
+    looked = by(first_two(), Settings(body=BodySettings(stature_m=1.9)))
     assert looks.asked == [((looks.sighting,), 1.9, (Clock(0.3),))]
     assert looked.clip.rig == TURNED
     assert [view.late_s for view in looked.clip.views] == [0.0, 0.25], "by the rig, not the clock"
@@ -118,7 +119,7 @@ def test_a_clip_of_two_films_is_calibrated_by_its_person_and_their_clock(
 def test_an_offset_that_is_given_is_not_looked_for(monkeypatch: pytest.MonkeyPatch) -> None:
     looks = Looks(monkeypatch, Clock(0.7))
     looks.late_s = 0.0
-    looked = by(two_views(), Settings(offset_s=0.0))
+    looked = by(first_two(), Settings(offset_s=0.0))
     assert looks.asked == [((looks.sighting,), 1.75, (ON_TIME,))]
     assert looked.clock == ON_TIME
 
@@ -128,7 +129,7 @@ def test_a_clip_whose_person_tells_no_rig_has_its_clock_set_right_and_says_why(
 ) -> None:
     looks = Looks(monkeypatch, Clock(0.4))
     looks.fault = "too little is seen"
-    looked = by(two_views())
+    looked = by(first_two())
     assert looked.clip.rig is None
     assert looked.clip.views[1].late_s == 0.4
     assert looked.warning == "not calibrated by the person: too little is seen"
@@ -140,10 +141,10 @@ def test_cameras_that_look_one_way_are_warned_of(monkeypatch: pytest.MonkeyPatch
     Looks(monkeypatch)
     same = msgspec.structs.replace(TURNED, cameras=(TURNED.cameras[0],) * 2)
     monkeypatch.setattr(sys.modules[__name__], "TURNED", same)
-    assert by(two_views()).warning.startswith("the cameras look 0 degrees apart")
+    assert by(first_two()).warning.startswith("the cameras look 0 degrees apart")
 
 
-FIRST, SECOND = two_views().views
+FIRST, SECOND = first_two().views
 LEFT_ALONE = {
     "it has a rig": {"rig": TURNED},
     "one view": {"views": (FIRST,)},
@@ -156,7 +157,7 @@ LEFT_ALONE = {
 def test_a_clip_is_left_as_it_is_where_the_person_cannot_tell(
     monkeypatch: pytest.MonkeyPatch, changed: dict[str, Any]
 ) -> None:
-    looks, clip = Looks(monkeypatch), two_views(**changed)
+    looks, clip = Looks(monkeypatch), first_two(**changed)
     assert by(clip) == Looked(clip)
     assert looks.asked == []
 
@@ -165,7 +166,7 @@ def test_a_clip_is_left_as_it_is_where_the_person_cannot_tell(
 def test_a_method_without_landmarks_asks_no_person(
     monkeypatch: pytest.MonkeyPatch, missing: str
 ) -> None:
-    looks, clip = Looks(monkeypatch), two_views()
+    looks, clip = Looks(monkeypatch), first_two()
     assert by(clip, method=msgspec.structs.replace(METHOD, **{missing: False})) == Looked(clip)
     assert looks.asked == []
 
@@ -175,7 +176,7 @@ def test_less_than_three_fifths_of_a_frame_of_view_2_is_not_late(
     late_s: float, set_by_s: float
 ) -> None:
     """Every second of 30 a second: 0.6 of 1 / 15 s is 0.04 s."""
-    clip = two_views()
+    clip = first_two()
     assert on_time(clip, Clock(late_s), late_s).views[1].late_s == set_by_s
     unsure = Clock(late_s, (1.0,))
     assert on_time(clip, unsure, late_s) == clip
@@ -196,14 +197,14 @@ class Pass:
         monkeypatch.setattr("viewer.track.look", self.look)
 
     def openings(self, clip: Clip, settings: SilhouetteSettings, readers: object) -> list[Opening]:
-        assert (clip, settings, readers) == (two_views(), SilhouetteSettings(), {})
+        assert (clip, settings, readers) == (first_two(), SilhouetteSettings(), {})
         return self.told
 
     def init(self, setup: Setup, background: Any, somebody: Any) -> tuple[ViewerNumber, int]:
         self.inits.append((setup, background, somebody))
         return setup.viewer, 0
 
-    def look(self, state: Any, frame: Any, guide: None) -> tuple[Any, Report, None]:
+    def look(self, state: Any, frame: Any, guide: None) -> tuple[Any, View, None]:
         number, seen = state
         self.looked.append((number, seen))
         shift = SHIFT if (number, frame.at) == (2, self.moved_at) else None
@@ -224,7 +225,7 @@ LANDMARKS = Landmarks(tuple((40.0 + 3 * n, 100.0 - 5 * n) for n in range(15)), (
 
 def test_each_view_is_looked_at_with_its_own_state(monkeypatch: pytest.MonkeyPatch) -> None:
     passed, settings = Pass(monkeypatch, 3), Settings(mode="paper")
-    first, second, size_px = sighting_of(two_views(), settings, METHOD, {}, {})
+    first, second, size_px = sighting_of(first_two(), settings, METHOD, {}, {})
     assert passed.inits == [
         (Setup(1, None, settings, METHOD), "bg1", None),
         (Setup(2, None, settings, METHOD), "bg2", LANDMARKS),
@@ -240,10 +241,10 @@ def test_a_clip_is_looked_at_until_a_camera_is_moved_or_enough_is_seen(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     Pass(monkeypatch, 9, moved_at=4)
-    first, second, _ = sighting_of(two_views(), Settings(), METHOD, {}, {})
+    first, second, _ = sighting_of(first_two(), Settings(), METHOD, {}, {})
     assert (len(first.times_s), len(second.times_s)) == (5, 4), "the moved frame is the last"
     assert rig_from_person.MOST_FRAMES == 3000
     monkeypatch.setattr(rig_from_person, "MOST_FRAMES", 3)
     Pass(monkeypatch, 9)
-    first, second, _ = sighting_of(two_views(), Settings(), METHOD, {}, {})
+    first, second, _ = sighting_of(first_two(), Settings(), METHOD, {}, {})
     assert (len(first.times_s), len(second.times_s)) == (3, 2)

@@ -3,10 +3,11 @@
 import msgspec
 import numpy as np
 import pytest
-from staging import report, silhouettes, standing
+from staging import changed, person_of, report, silhouettes, standing
 
+from common.body.observation import Landmarks
 from common.bus.instant import TwoViews
-from common.bus.messages import Landmarks, Report, ViewerNumber
+from common.bus.messages import View, ViewerNumber
 from common.rig.camera import paper_rig
 from integrator.live_rig import rig_search
 from integrator.live_rig.rig_job import Job, Solved, Stand, Trusted, track_of_bytes
@@ -20,7 +21,7 @@ GOOD = Solved(rig=RIG, gap_mm=15.0, turn_error_deg=6.0, trust=Trusted(11.0, ()))
 
 def seen(
     viewer: ViewerNumber, n: int, swing: float, sure: float = 0.9, late_s: float = 0.0
-) -> Report:
+) -> View:
     """Landmarks of somebody upright whose arms swing by so many pixels."""
     joints_px = np.random.default_rng(1).uniform(30, 90, (15, 2))
     joints_px[:2] = (60.0, 75.0), (62.0, 40.0)
@@ -250,19 +251,19 @@ def test_pictures_of_two_sizes_tell_nothing() -> None:
 
 def test_who_stops_counts_as_moving_for_a_second_and_then_leaves_a_gap() -> None:
     """Joints that went 0.04 heights on average have moved; the box is 80 rows high or so."""
-    box = seen(1, 0, 0.0).box
-    assert box is not None
+    box = person_of(seen(1, 0, 0.0)).box
     tall_px = box.bottom - box.top
 
     def at(n: int, by_px: float) -> TwoViews:
         pair = []
         for viewer in (1, 2):
             one = seen(viewer, n, 0.0)
-            assert one.landmarks is not None
-            places = [(x, y) for x, y in one.landmarks.joints_px]
+            landmarks = person_of(one).landmarks
+            assert landmarks is not None
+            places = [(x, y) for x, y in landmarks.joints_px]
             places[3] = (places[3][0] + by_px, places[3][1])
-            shown = msgspec.structs.replace(one.landmarks, joints_px=tuple(places))
-            pair.append(msgspec.structs.replace(one, landmarks=shown))
+            shown = msgspec.structs.replace(landmarks, joints_px=tuple(places))
+            pair.append(changed(one, landmarks=shown))
         return (pair[0], pair[1])
 
     state, _ = rig_search.step(rig_search.init(1 / HZ, 1.75), at(0, 0.0))

@@ -6,7 +6,7 @@ import pytest
 from test_own_landmarks import acted
 
 from common.body.body import JOINT_NAMES
-from common.bus.messages import Landmarks
+from common.body.observation import Landmarks
 from common.video.pictures import Image
 from viewer.landmarks.own_landmarks import found_anywhere
 from viewer.room import room_people

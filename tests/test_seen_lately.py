@@ -4,15 +4,16 @@ import numpy as np
 import pytest
 from staging import RIG, report, silhouettes, standing
 
+from common.body.observation import Landmarks
 from common.bus.instant import TwoViews
-from common.bus.messages import Landmarks, Report, ViewerNumber
+from common.bus.messages import View, ViewerNumber
 from integrator.live_rig.rig_job import track_of_bytes
 from integrator.live_rig.seen_lately import State, stand_before, step
 
 MASKS = silhouettes(standing())
 
 
-def seen(viewer: ViewerNumber, captured_s: float, sure: float = 0.9) -> Report:
+def seen(viewer: ViewerNumber, captured_s: float, sure: float = 0.9) -> View:
     """Somebody upright, two pixels further right in view 2."""
     places = tuple((60.0 + n + 2.0 * viewer, 110.0 - 5.0 * n) for n in range(15))
     upright = (places[1], places[0], *places[2:])

@@ -4,11 +4,11 @@ import msgspec
 import numpy as np
 import pytest
 from posing import posed
-from staging import report, silhouettes
+from staging import observation, silhouettes
 
 from common.body.body import Bdp, Vector
+from common.body.observation import Observation
 from common.body.proportions import body_vector, stature, thesis_bdp
-from common.bus.messages import Report
 from common.raster.similarity import similarity
 from common.rig.camera import paper_rig
 from integrator.fit import shape_fit
@@ -31,9 +31,9 @@ def slim() -> Bdp:
     return msgspec.structs.replace(PRIOR, torso=torso, r_lower_leg=shank, l_lower_leg=shank)
 
 
-def seen_as(body: Bdp, pose: Vector, cut: bool = False) -> tuple[Report, Report]:
+def seen_as(body: Bdp, pose: Vector, cut: bool = False) -> tuple[Observation, Observation]:
     first, second = silhouettes(pose, body, RIG)
-    return report(1, first, cut=cut), report(2, second, cut=cut)
+    return observation(first, cut=cut), observation(second, cut=cut)
 
 
 def standing() -> Vector:

@@ -1,12 +1,14 @@
 """What is shown of an instant, held against geometry and Bayes' rule."""
 
 import math
+from typing import Any
 
 import cv2
 import msgspec
 import numpy as np
 import pytest
 from show_page import BDP, RIG, pose_at, snapshot_at
+from staging import changed
 
 from animator.page.page_messages import ShownPosture
 from animator.page.shown import (
@@ -20,8 +22,8 @@ from animator.page.shown import (
 )
 from animator.scene import Snapshot
 from common.body.body import ANGLES_IN_POSE
-from common.bus.messages import Agreement, Body, Picture, Posture, Report
-from common.raster.silhouette_report import pack, unpack
+from common.bus.messages import Agreement, Body, Picture, Posture, View
+from common.raster.silhouette_report import mask_of, silhouette_view
 from common.rig.camera import centre
 from common.rig.upright import Upright
 
@@ -55,7 +57,7 @@ def test_rivals_are_those_of_the_posture_in_the_headline() -> None:
 
 def test_an_outline_filled_is_the_silhouette_again_within_its_smoothing() -> None:
     report = snapshot_at(4).reports[1]
-    mask = unpack(report)
+    mask = mask_of(report)
     filled = np.zeros(mask.shape, np.uint8)
     for points in outline_of(report):
         corners = np.array(points).reshape(-1, 2) - 0.5
@@ -74,7 +76,7 @@ def test_a_frame_tells_both_views_the_solids_and_the_joints() -> None:
     assert first is not None
     assert len(first.joints) == 44
     assert len(frame.confidence) == 22
-    seen, knee = unpack(snapshot_at(4).reports[1]), first.joints[14:16]
+    seen, knee = mask_of(snapshot_at(4).reports[1]), first.joints[14:16]
     assert seen[int(knee[1]), int(knee[0])], "the left knee lies in the silhouette"
     pelvis = np.array(frame.solids[0][:3])
     assert pelvis == pytest.approx(pose_at(4 / 15)[:3], abs=BDP.torso.height)
@@ -128,16 +130,14 @@ def test_the_person_is_told_what_is_in_the_way() -> None:
     assert isinstance(body, Body)
     measuring = msgspec.structs.replace(body, status="measuring")
 
-    def report(**told: object) -> Report:
-        given = {"width": 8, "height": 1, "silhouette": pack(np.zeros((1, 8), bool)), "box": None}
-        moment = {"frame": 0, "captured_s": 0.0, "clock_s": 0.0, "viewer": 1}
-        return Report(**given, **moment, **told)  # type: ignore[arg-type]
+    def report(**told: Any) -> View:
+        return changed(silhouette_view(1, np.pad(np.ones((2, 2), np.bool_), 1)), **told)
 
     refused = report(refusal="raise both arms sideways")
     assert hint(measuring, refused) == "raise both arms sideways"
     assert hint(body, refused) == ""
     assert "partly outside" in hint(body, report(cut=True))
-    assert "frozen" in hint(body, report(fault="frozen"))
+    assert "frozen" in hint(body, msgspec.structs.replace(refused, fault="frozen"))
 
 
 def test_each_view_is_told_its_own_numbers_as_exactly_as_they_are_drawn() -> None:
@@ -279,10 +279,7 @@ def test_an_outline_of_two_pixels_is_none() -> None:
     mask = np.zeros((12, 16), np.bool_)
     mask[2, 3:5] = True
     mask[6:11, 4:12] = True
-    report = msgspec.structs.replace(
-        snapshot_at(4).reports[1], width=16, height=12, silhouette=pack(mask)
-    )
-    (only,) = outline_of(report)
+    (only,) = outline_of(silhouette_view(1, mask))
     corners = np.array(only).reshape(-1, 2)
     assert corners.min(axis=0).tolist() == [4.5, 6.5]
     assert corners.max(axis=0).tolist() == [11.5, 10.5]

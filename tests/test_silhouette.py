@@ -10,7 +10,7 @@ import pytest
 from numpy.typing import NDArray
 from spoiling import film_of
 
-from common.bus.messages import Box
+from common.body.observation import Box
 from common.config.part_settings import SilhouetteSettings
 from common.config.settings import Settings
 from common.method import DEFAULT, PAPER

@@ -7,7 +7,7 @@ from staging import NOBODY, report
 
 from calibration.gate.silhouette_motion import State, init, moves, step
 from common.bus.instant import Instant
-from common.bus.messages import Report, ViewerNumber
+from common.bus.messages import View, ViewerNumber
 from common.raster.similarity import Mask
 
 RATE_HZ = 15.0
@@ -28,7 +28,7 @@ def after(first: list[Mask], second: list[Mask], rate_hz: float = RATE_HZ) -> St
     return state
 
 
-def told(viewer: ViewerNumber, mask: Mask, captured_s: float) -> Report:
+def told(viewer: ViewerNumber, mask: Mask, captured_s: float) -> View:
     return report(viewer, mask, captured_s=captured_s, area_px=int(mask.sum()))
 
 

@@ -7,12 +7,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from common.bus.messages import Box
+from common.body.observation import Box
 from common.raster.silhouette_report import (
     box_of,
     centroid_px,
     is_cut,
-    silhouette_report,
+    mask_of,
+    people_of,
+    silhouette_view,
     unpack,
     with_silhouette,
 )
@@ -29,26 +31,32 @@ def masks() -> tuple[np.ndarray, np.ndarray]:
 
 def test_a_report_tells_what_its_mask_does() -> None:
     whole, _ = masks()
-    report = silhouette_report(2, whole, 7, 0.5)
-    assert (report.viewer, report.frame, report.captured_s) == (2, 7, 0.5)
-    assert (report.width, report.height) == (9, 6)
-    assert report.box == Box(left=3, right=6, top=2, bottom=4)
-    assert (report.area_px, report.cut) == (12, False)
-    assert np.array_equal(unpack(report), whole)
+    view = silhouette_view(2, whole, 7, 0.5)
+    assert (view.viewer, view.frame, view.captured_s) == (2, 7, 0.5)
+    assert (view.width, view.height) == (9, 6)
+    (person,) = view.people
+    assert view.person is person
+    assert (person.width, person.height) == (9, 6)
+    assert person.box == Box(left=3, right=6, top=2, bottom=4)
+    assert (person.area_px, person.cut) == (12, False)
+    assert np.array_equal(unpack(person), whole)
+    assert np.array_equal(mask_of(view), whole)
 
 
 def test_another_silhouette_changes_what_it_tells_and_nothing_else() -> None:
     whole, part = masks()
-    report = msgspec.structs.replace(silhouette_report(1, whole), score=0.8)
-    found = with_silhouette(report, part)
-    assert (found.area_px, found.cut, found.score) == (7, True, 0.8)
+    (person,) = people_of(whole)
+    person = msgspec.structs.replace(person, refusal="why")
+    found = with_silhouette(person, part)
+    assert (found.area_px, found.cut, found.refusal) == (7, True, "why")
     assert np.array_equal(unpack(found), part)
-    assert with_silhouette(found, whole) == report
+    assert with_silhouette(found, whole) == person
 
 
-def test_nobody_has_no_box() -> None:
-    report = silhouette_report(1, np.zeros((4, 4), np.bool_))
-    assert (report.box, report.area_px, report.cut) == (None, 0, False)
+def test_an_empty_mask_is_no_person() -> None:
+    view = silhouette_view(1, np.zeros((4, 5), np.bool_))
+    assert (view.people, view.person, view.width, view.height) == ((), None, 5, 4)
+    assert np.array_equal(mask_of(view), np.zeros((4, 5), np.bool_))
 
 
 def test_a_box_is_the_boundary_of_what_was_drawn() -> None:

@@ -3,17 +3,17 @@
 import numpy as np
 import pytest
 from posing import posed
-from staging import report
+from staging import observation
 
 from common.body.body import POSE_INDEX, POSE_NAMES, Vector
 from common.body.kinematics import limb_frames
+from common.body.observation import Observation
 from common.body.proportions import (
     LOWER_LEG_HEIGHT,
     UPPER_LEG_HEIGHT,
     body_vector,
     thesis_bdp,
 )
-from common.bus.messages import Report
 from common.method import DEFAULT
 from common.raster.bits import count, pack_words
 from common.raster.kernel import draw_body, view_of
@@ -34,9 +34,9 @@ def pictures(pose: Vector) -> list[Mask]:
     return [draw_body(BODY, pose, view, SIZE) for view in VIEWS]
 
 
-def reports(pose: Vector) -> tuple[Report, Report]:
+def seen(pose: Vector) -> tuple[Observation, Observation]:
     first, second = pictures(pose)
-    return report(1, first), report(2, second)
+    return observation(first), observation(second)
 
 
 def standing(**angles_deg: float) -> Vector:
@@ -87,7 +87,7 @@ def test_the_arm_that_swings_is_told_from_the_one_that_hangs(
         standing(**apart, **said),
         standing(**apart),
         BODY,
-        silhouettes_of(RIG, reports(truth)),
+        silhouettes_of(RIG, seen(truth)),
         votes(False),
     )
     assert found[POSE_INDEX[f"{side}_shoulder_x"]] == 80.0
@@ -97,7 +97,7 @@ def test_the_arm_that_swings_is_told_from_the_one_that_hangs(
 def test_a_lost_arm_is_found_hanging() -> None:
     """L1: errors do not go on for ever."""
     pose = standing(l_shoulder_z=280.0, l_shoulder_x=100.0, l_elbow_x=90.0)
-    found = settled(pose, pose, BODY, silhouettes_of(RIG, reports(standing())), votes(False))
+    found = settled(pose, pose, BODY, silhouettes_of(RIG, seen(standing())), votes(False))
     assert found == pytest.approx(standing())
 
 
@@ -107,14 +107,14 @@ def test_a_body_is_moved_to_where_both_views_have_it(axis: int) -> None:
     truth, pose = standing(), standing()
     pose[axis] += 0.03
     assert settled(
-        pose, pose, BODY, silhouettes_of(RIG, reports(truth)), votes(False)
+        pose, pose, BODY, silhouettes_of(RIG, seen(truth)), votes(False)
     ) == pytest.approx(truth)
 
 
 def test_what_fits_is_left_alone() -> None:
     """A pose that both silhouettes agree with stays, bit for bit."""
     pose = standing(r_shoulder_z=120.0, l_shoulder_x=40.0, r_hip_x=30.0)
-    found = settled(pose, standing(), BODY, silhouettes_of(RIG, reports(pose)), votes(False))
+    found = settled(pose, standing(), BODY, silhouettes_of(RIG, seen(pose)), votes(False))
     assert np.array_equal(found, pose)
 
 
@@ -125,7 +125,7 @@ def test_a_squat_is_found_from_straight_legs(bend_deg: float, bow_deg: float) ->
     legs |= {f"{side}_knee_x": -2 * bend_deg for side in "rl"}
     truth = standing(torso_x=bow_deg, **legs)
     truth[1] -= 2 * 0.49 * (1.0 - np.cos(np.radians(bend_deg)))  # thigh and shank: 0.46, 0.52
-    found = settled(standing(), standing(), BODY, silhouettes_of(RIG, reports(truth)), votes(False))
+    found = settled(standing(), standing(), BODY, silhouettes_of(RIG, seen(truth)), votes(False))
     assert found == pytest.approx(truth, abs=1e-9)
 
 
@@ -133,8 +133,8 @@ def test_only_a_fitted_body_is_turned_joint_by_joint() -> None:
     """A measured body has no feet and would bend to cover them; what was fitted may turn."""
     truth = standing(r_hip_x=24.0, r_knee_x=-30.0)
     start = standing(r_hip_x=10.0, r_knee_x=-8.0)
-    turned = settled(start, start, BODY, silhouettes_of(RIG, reports(truth)), votes(True))
-    kept = settled(start, start, BODY, silhouettes_of(RIG, reports(truth)), votes(False))
+    turned = settled(start, start, BODY, silhouettes_of(RIG, seen(truth)), votes(True))
+    kept = settled(start, start, BODY, silhouettes_of(RIG, seen(truth)), votes(False))
     hip, knee = POSE_INDEX["r_hip_x"], POSE_INDEX["r_knee_x"]
     assert turned[hip] == pytest.approx(24.0, abs=6.0)
     assert turned[knee] == pytest.approx(-30.0, abs=9.0)

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from common.body.body import JOINT_NAMES, LIMBS, POSE_INDEX, rest_pose
 from common.body.kinematics import joints
+from common.body.observation import Box, Fit, Landmarks, Observation
 from common.body.proportions import THESIS_RATIOS, body_vector, thesis_bdp
 from common.body.stick_body import (
     ADULT,
@@ -20,7 +21,7 @@ from common.body.stick_body import (
     joints_px,
     standing,
 )
-from common.bus.messages import Box, Fit, Landmarks, Lifting, Report
+from common.bus.messages import Lifting
 from common.method import DEFAULT, METHODS
 from common.notes.notes import Orientation
 from common.raster.silhouette_report import pack
@@ -49,14 +50,14 @@ AT = {name: i for i, name in enumerate(JOINT_NAMES)}
 
 
 def sight_of(
-    report: Report, printed: bool = True, said: Annotations = Annotations(), n: int = 1
+    person: Observation, printed: bool = True, said: Annotations = Annotations(), n: int = 1
 ) -> Sight:
-    """A report, held against somebody of 1.75 m."""
+    """What one view shows, held against somebody of 1.75 m."""
     man, method = (THESIS, METHODS["thesis"]) if printed else (ADULT, DEFAULT)
-    return Sight(method, n - 1, RIG, report, man, thesis_bdp(1.75), None, 0.0, said)
+    return Sight(method, n - 1, RIG, person, man, thesis_bdp(1.75), None, 0.0, said, n)
 
 
-def report_of(man: Stickman, arm_deg: float = 270.0) -> Report:
+def seen_as(man: Stickman, arm_deg: float = 270.0) -> Observation:
     """A stick body that stands, its arm at the picture's left at an angle, in its own box."""
     pose = standing(80.0, 65.0, TALL_PX)
     pose[ANGLE + 6] = pose[ANGLE + 8] = arm_deg
@@ -72,28 +73,26 @@ def report_of(man: Stickman, arm_deg: float = 270.0) -> Report:
         score=0.8,
         matches=1,
     )
-    return Report(
-        frame=0,
-        captured_s=0.0,
-        clock_s=0.0,
-        viewer=1,
+    return Observation(
         width=WIDTH,
         height=HEIGHT,
         silhouette=pack(mask),
         box=Box(left=70, right=89, top=25, bottom=104),
-        root_px=(80.0, 65.0),
-        fit=fit,
+        area_px=80 * 20,
+        stick=fit,
     )
 
 
-def settled(report: Report, said: Annotations = Annotations(), printed: bool = True) -> Hypothesis:
-    sight = sight_of(report, printed, said)
+def settled(
+    person: Observation, said: Annotations = Annotations(), printed: bool = True
+) -> Hypothesis:
+    sight = sight_of(person, printed, said)
     return single_view.step(None, single_view.begun(sight, None), sight).body
 
 
 def test_a_body_in_the_picture_plane_keeps_the_printed_lengths() -> None:
     """T19, T20: what is parallel to the picture is as long as table 3.1 says."""
-    joints = settled(report_of(THESIS, 225.0)).joints_m
+    joints = settled(seen_as(THESIS, 225.0)).joints_m
     unit = 1.75 / THESIS_RATIOS["stature"]
     for near, far, part in (
         ("r_shoulder", "r_elbow", "upper_arm"),
@@ -106,17 +105,17 @@ def test_a_body_in_the_picture_plane_keeps_the_printed_lengths() -> None:
 
 
 def test_the_lifted_body_is_seen_where_the_stick_was() -> None:
-    report, said = report_of(ADULT, 200.0), Annotations(orientation="forward_right")
-    _, lifted = lifted_stick.step(depth_signs.init(), sight_of(report, False, said))
-    assert report.fit is not None
-    assert project(CAMERA, lifted.joints_m) == pytest.approx(np.array(report.fit.joints_px))
+    person, said = seen_as(ADULT, 200.0), Annotations(orientation="forward_right")
+    _, lifted = lifted_stick.step(depth_signs.init(), sight_of(person, False, said))
+    assert person.stick is not None
+    assert project(CAMERA, lifted.joints_m) == pytest.approx(np.array(person.stick.joints_px))
 
 
 def test_who_is_told_to_face_away_has_the_sides_swapped() -> None:
     """T10, T22: left and right of the picture become those of the body by its orientation."""
-    report = report_of(THESIS, 180.0)
-    front = settled(report, Annotations(orientation="forward_left")).joints_m
-    back = settled(report, Annotations(orientation="backward_left")).joints_m
+    person = seen_as(THESIS, 180.0)
+    front = settled(person, Annotations(orientation="forward_left")).joints_m
+    back = settled(person, Annotations(orientation="backward_left")).joints_m
     assert front[AT["r_wrist"], 0] == pytest.approx(back[AT["l_wrist"], 0])
     assert front[AT["l_shoulder"], 0] > 0 > back[AT["l_shoulder"], 0]
 
@@ -125,23 +124,23 @@ def test_who_is_told_to_face_away_has_the_sides_swapped() -> None:
 def test_a_joint_is_where_the_user_puts_it(printed: bool) -> None:
     """T26: a hidden joint is pointed at."""
     told = Annotations(joints_px={"r_wrist": (40.0, 30.0)})
-    body = settled(report_of(THESIS if printed else ADULT), told, printed)
+    body = settled(seen_as(THESIS if printed else ADULT), told, printed)
     placed = project(CAMERA, body.joints_m)[AT["r_wrist"]]
     assert placed == pytest.approx((40.0, 30.0), abs=0.5)
 
 
 def test_a_segment_leans_as_the_user_says() -> None:
     """T21: half a length in the picture is 60 degrees out of it, to the side that is told."""
-    report = report_of(THESIS, 180.0)
-    assert report.fit is not None
-    places = list(report.fit.joints_px)
+    person = seen_as(THESIS, 180.0)
+    assert person.stick is not None
+    places = list(person.stick.joints_px)
     shoulder, elbow = places[AT["r_shoulder"]], places[AT["r_elbow"]]
     middle = ((shoulder[0] + elbow[0]) / 2, elbow[1])
     places[AT["r_elbow"]] = middle
-    fit = msgspec.structs.replace(report.fit, joints_px=tuple(places))
-    report = msgspec.structs.replace(report, fit=fit)
+    fit = msgspec.structs.replace(person.stick, joints_px=tuple(places))
+    person = msgspec.structs.replace(person, stick=fit)
     for way, sign in (("toward", 1.0), ("away", -1.0)):
-        joints = settled(report, Annotations(depth={"r_upper_arm": way})).joints_m
+        joints = settled(person, Annotations(depth={"r_upper_arm": way})).joints_m
         lean = joints[AT["r_elbow"], 2] - joints[AT["r_shoulder"], 2]
         expected = sign * np.sin(np.radians(60)) * 1.75 * THESIS_RATIOS["upper_arm"] / 175
         assert lean == pytest.approx(expected, rel=0.02)
@@ -149,7 +148,7 @@ def test_a_segment_leans_as_the_user_says() -> None:
 
 def test_what_a_pixel_does_to_a_limbs_angle_is_told() -> None:
     """T19: an upper arm of 11.4 px in the plane, one shorter, is 24 degrees out of it."""
-    own = settled(report_of(THESIS)).lifting
+    own = settled(seen_as(THESIS)).lifting
     length_px = THESIS_RATIOS["upper_arm"] / THESIS_RATIOS["stature"] * TALL_PX
     error_deg = np.degrees(np.arccos(1.0 - 1.0 / length_px))
     assert own.depth_error_deg[LIMBS.index("l_upper_arm")] == pytest.approx(error_deg, rel=0.02)
@@ -163,17 +162,17 @@ def test_whom_one_camera_had_before_it_the_opposite_one_has_from_behind(away: fl
     pose = rest_pose()
     pose[POSE_INDEX["torso_y"]] = 180.0 if away > 0.5 else 0.0
     had = joints(body_vector(thesis_bdp(1.75)), pose)
-    report = report_of(ADULT)
-    one = single_view.begun(sight_of(report)._replace(rig=rig), None)._replace(front=Front(away))
-    other = single_view.begun(sight_of(report, n=2)._replace(rig=rig), had, one)
+    person = seen_as(ADULT)
+    one = single_view.begun(sight_of(person)._replace(rig=rig), None)._replace(front=Front(away))
+    other = single_view.begun(sight_of(person, n=2)._replace(rig=rig), had, one)
     assert other.front is not None
     assert other.front.away == pytest.approx(1.0 - away)
 
 
 def test_a_view_left_alone_knows_which_way_both_had_the_body() -> None:
     """T22: what segments pointed where goes on from the last instant that both views saw."""
-    sight = sight_of(report_of(ADULT), printed=False)
-    front = settled(report_of(THESIS)).joints_m
+    sight = sight_of(seen_as(ADULT), printed=False)
+    front = settled(seen_as(THESIS)).joints_m
     back = reflection.seen_from_behind(CAMERA, front)
     for joints_m, towards in ((front, "forward"), (back, "backward")):
         known = single_view.begun(sight, joints_m)
@@ -190,7 +189,7 @@ def test_limits_turn_a_limb_in_depth_and_leave_the_picture_alone(
     turned[POSE_INDEX["torso_y"]], turned[POSE_INDEX["l_knee_x"]] = 40.0, 50.0
     astray_m = joints(body_vector(thesis_bdp(1.75)), turned)
     monkeypatch.setattr(bent_limbs, "bent", lambda sight, joints_m: astray_m)
-    sight = sight_of(report_of(ADULT), printed=False)
+    sight = sight_of(seen_as(ADULT), printed=False)
     found = lone_proposal.step(lone_proposal.Before(None, None, None, None), sight).found
     assert found.pose[POSE_INDEX["l_knee_x"]] <= 0.0
     assert project(CAMERA, found.joints_m) == pytest.approx(project(CAMERA, astray_m))
@@ -205,7 +204,7 @@ def test_a_body_that_trembles_along_the_line_of_sight_is_kept_where_it_was(
     pose = rest_pose()
     pose[POSE_INDEX["y"]] = 0.9
     still_m = joints(body_vector(thesis_bdp(1.75)), pose)
-    sight = sight_of(msgspec.structs.replace(report_of(ADULT), fit=None), printed=False)
+    sight = sight_of(msgspec.structs.replace(seen_as(ADULT), stick=None), printed=False)
     off_m = still_m - centre(CAMERA)
     memory, alone, found = None, single_view.begun(sight, None), []
     for n in range(40):
@@ -220,9 +219,9 @@ def test_a_body_that_trembles_along_the_line_of_sight_is_kept_where_it_was(
 
 
 def test_a_stick_body_is_asked_for_where_what_is_proposed_fits_badly() -> None:
-    """A box is no person: the next report shall bring a stick body."""
-    report = msgspec.structs.replace(report_of(ADULT), fit=None)
-    sight = sight_of(report, printed=False)
+    """A box is no person: the next person shall bring a stick body."""
+    person = msgspec.structs.replace(seen_as(ADULT), stick=None)
+    sight = sight_of(person, printed=False)
     found = single_view.step(None, single_view.begun(sight, None), sight)
     assert found.body.score < single_view.GOOD
     assert found.alone.stick
@@ -230,14 +229,14 @@ def test_a_stick_body_is_asked_for_where_what_is_proposed_fits_badly() -> None:
 
 def test_the_only_camera_of_a_rig_is_its_first_whatever_its_number() -> None:
     """Proposals are looked for in the axes of camera 1: one that stands nowhere gives none."""
-    report, alone = report_of(ADULT), msgspec.structs.replace(RIG, cameras=(CAMERA, CAMERA))
+    person, alone = seen_as(ADULT), msgspec.structs.replace(RIG, cameras=(CAMERA, CAMERA))
     for number, rig, seen in (
-        (1, RIG, (report, None)),
-        (2, RIG, (None, report)),
-        (1, alone, (report, None)),
-        (2, alone, (report, None)),
+        (1, RIG, (person, None)),
+        (2, RIG, (None, person)),
+        (1, alone, (person, None)),
+        (2, alone, (person, None)),
     ):
-        assert sight_of(report, n=number)._replace(rig=rig).seen == seen
+        assert sight_of(person, n=number)._replace(rig=rig).seen == seen
 
 
 def a_body(score: float) -> Hypothesis:
@@ -271,12 +270,12 @@ def test_a_lifted_body_goes_before_a_proposed_one_that_fits_badly(
     asks: bool,
 ) -> None:
     """By S and a margin of 0.15, where it is no farther from the landmarks."""
-    report = report_of(ADULT)
-    sight = sight_of(report, printed=False)
+    person = seen_as(ADULT)
+    sight = sight_of(person, printed=False)
     one = a_body(proposed)
     shown_px = project(CAMERA, one.joints_m) + np.array([5.0, 0.0])
     shown = Landmarks(tuple((x, y) for x, y in shown_px.tolist()), (0.5, 0.9, *(0.7,) * 13))
-    sight = sight._replace(report=msgspec.structs.replace(report, landmarks=shown))
+    sight = sight._replace(person=msgspec.structs.replace(person, landmarks=shown))
     two = a_body(lifted)._replace(joints_m=one.joints_m - [farther_px / 200.0 * 4.375, 0.0, 0.0])
     signs = depth_signs.init()._replace(turning=np.full((10, 3), 7.0))
     depth = calm_depth.step(None, centre(CAMERA), one.joints_m, 0.1)[0]
@@ -301,7 +300,7 @@ def test_a_lifted_body_goes_before_a_proposed_one_that_fits_badly(
 
 def test_how_far_a_body_is_from_what_is_shown_is_weighed_by_how_sure_that_is() -> None:
     """Worked by hand: 4 px at the sure joints, 10 at one that is less sure."""
-    sight = sight_of(report_of(ADULT), printed=False)
+    sight = sight_of(seen_as(ADULT), printed=False)
     body = a_body(0.5)
     assert single_view._off_px(sight, body) == 0.0
     shown_px = project(CAMERA, body.joints_m)
@@ -309,14 +308,13 @@ def test_how_far_a_body_is_from_what_is_shown_is_weighed_by_how_sure_that_is() -
     shown_px[4] += [3.6, -4.8]
     sure = (1.0,) * 4 + (0.2,) + (0.0,) * 10
     shown = Landmarks(tuple((x, y) for x, y in shown_px.tolist()), sure)
-    report = msgspec.structs.replace(sight.report, landmarks=shown)
-    off_px = single_view._off_px(sight._replace(report=report), body)
+    person = msgspec.structs.replace(sight.person, landmarks=shown)
+    off_px = single_view._off_px(sight._replace(person=person), body)
     assert off_px == pytest.approx((4 * 4.0 + 0.2 * 10.0) / 4.2)
 
 
 def test_what_a_view_begins_with_is_nothing_or_what_was_known_before_it() -> None:
-    report = msgspec.structs.replace(report_of(ADULT), viewer=2)
-    sight = sight_of(report, printed=False, n=2)
+    sight = sight_of(seen_as(ADULT), printed=False, n=2)
     fresh = single_view.begun(sight, None)
     assert fresh == single_view.Alone(
         2, 0.0, Lifting("", 1.0, ()), Front(), fresh.signs, None, stick=False
@@ -382,7 +380,7 @@ def test_a_proposal_is_turned_about_and_shown_otherwise_where_front_is_asked_for
     monkeypatch.setattr(reflection, "seen_from_behind", lambda _, joints_m: joints_m + 100.0 * up_m)
     monkeypatch.setattr(reflection, "as_shown", lambda _, joints_m, shown: joints_m + 1000.0 * up_m)
     monkeypatch.setattr(lone_proposal, "_with_landmarks", with_landmarks)
-    sight = sight_of(report_of(ADULT), False, Annotations(orientation=named))
+    sight = sight_of(seen_as(ADULT), False, Annotations(orientation=named))
     sight = sight._replace(
         method=msgspec.structs.replace(sight.method, reflection=reflects), dt_s=0.2
     )
@@ -416,8 +414,8 @@ def test_what_the_picture_shows_is_joined_with_a_proposal_that_is_sure_in_the_pi
     monkeypatch.setattr(landmark_fusion, "step", joined)
     shown_px = project(CAMERA, body.joints_m).tolist()
     shown = Landmarks(tuple((x, y) for x, y in shown_px), (0.9,) * 15, 20.0, 0.95)
-    report = msgspec.structs.replace(report_of(ADULT), landmarks=shown)
-    sight = sight_of(report, printed=False)
+    person = msgspec.structs.replace(seen_as(ADULT), landmarks=shown)
+    sight = sight_of(person, printed=False)
     remembered: Any = "kept"
     before = lone_proposal.Before(None, Front() if knows_front else None, remembered, None)
     confidence = np.linspace(0.2, 0.8, 15)
@@ -436,7 +434,7 @@ def test_what_the_picture_shows_is_joined_with_a_proposal_that_is_sure_in_the_pi
     assert not rays.confidence[1].any()
     assert found[pose_proposal.AT] == pytest.approx(sure * own ** (2 / 3))
     assert joints_m[pose_proposal.AT] == pytest.approx(fused_m)
-    nothing = sight_of(report_of(ADULT), printed=False)
+    nothing = sight_of(seen_as(ADULT), printed=False)
     same_m, same, memory = lone_proposal._with_landmarks(before, nothing, body.joints_m, confidence)
     assert same_m is body.joints_m
     assert same is confidence
@@ -446,7 +444,7 @@ def test_what_the_picture_shows_is_joined_with_a_proposal_that_is_sure_in_the_pi
 
 def test_neck_and_crown_are_in_line_with_a_trunk_that_leans() -> None:
     """Worked by hand: from between hips to between shoulders it is (0.3, 0.4, 0) m."""
-    sight = sight_of(report_of(ADULT), printed=False)
+    sight = sight_of(seen_as(ADULT), printed=False)
     places_m = a_body(0.5).joints_m.copy()
     places_m[AT["l_hip"]], places_m[AT["r_hip"]] = (0.3, 0.8, 0.1), (0.1, 1.0, -0.1)
     places_m[AT["l_shoulder"]], places_m[AT["r_shoulder"]] = (0.7, 1.2, 0.0), (0.3, 1.4, 0.0)
@@ -471,7 +469,7 @@ def test_limits_are_kept_where_the_method_has_them_and_the_user_placed_nothing()
     turned = rest_pose()
     turned[POSE_INDEX["l_knee_x"]], turned[POSE_INDEX["l_hip_x"]] = 50.0, 20.0
     astray_m = np.asarray(joints(body_vector(thesis_bdp(1.75)), turned))
-    report = report_of(ADULT)
+    person = seen_as(ADULT)
     placed = Annotations(joints_px={"r_wrist": (40.0, 30.0)})
     for printed, said, limits in (
         (False, Annotations(), True),
@@ -479,14 +477,14 @@ def test_limits_are_kept_where_the_method_has_them_and_the_user_placed_nothing()
         (True, Annotations(), False),
         (True, placed, False),
     ):
-        _, found_m = posed(sight_of(report, printed, said), astray_m)
+        _, found_m = posed(sight_of(person, printed, said), astray_m)
         assert (found_m is astray_m) is not limits
 
 
 def test_a_lifted_body_is_scored_by_its_fit_as_printed_else_by_its_place_in_the_picture() -> None:
-    report = report_of(ADULT)
+    person = seen_as(ADULT)
     for printed in (True, False):
-        sight = sight_of(report, printed)
+        sight = sight_of(person, printed)
         _, body = lifted_stick.step(depth_signs.init(), sight)
         own = 0.8 if printed else stick_similarity(sight, body.joints_m)
         assert body.score == own
@@ -496,10 +494,10 @@ def test_a_lifted_body_is_scored_by_its_fit_as_printed_else_by_its_place_in_the_
 def test_a_joint_is_as_sure_as_its_fit_what_it_hangs_on_and_its_sign() -> None:
     """Worked by hand: a hidden left upper arm keeps a quarter, and so its hand; a right shank that
     leans by 20 degrees has its sign's confidence, one that leans by 15 does not."""
-    report = report_of(ADULT)
-    assert report.fit is not None
+    person = seen_as(ADULT)
+    assert person.stick is not None
     hidden = tuple(name == "l_upper_arm" for name in LIMBS)
-    fit = msgspec.structs.replace(report.fit, hidden=hidden, score=0.8)
+    fit = msgspec.structs.replace(person.stick, hidden=hidden, score=0.8)
     tilt_deg = np.zeros(10)
     tilt_deg[LIMBS.index("r_lower_leg")], tilt_deg[LIMBS.index("l_lower_leg")] = -20.0, 15.0
     tilt_deg[LIMBS.index("head")] = 30.0

@@ -6,7 +6,7 @@ import pytest
 from test_judged_background import film
 from test_own_landmarks import RIG
 
-from common.bus.messages import Landmarks
+from common.body.observation import Landmarks
 from synth.motion.motions import MOTION, performance
 from synth.person.people import person
 from synth.picture.render import render

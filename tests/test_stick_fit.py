@@ -2,18 +2,20 @@
 
 from pathlib import Path
 
+import msgspec
 import numpy as np
 import pytest
 from stick_posing import STATURE_PX, drawn, in_profile, larger, stick_pose
 
 from common.body.body import JOINT_NAMES, LIMBS, POSE_INDEX, rest_pose
+from common.body.observation import Fit
 from common.body.proportions import body_vector, thesis_bdp
 from common.body.stick_body import ADULT, ANGLE, THESIS, joints_px
 from common.bus.message_codec import decode, encode
-from common.bus.messages import Fit, Report
+from common.bus.messages import View
 from common.method import DEFAULT, METHODS, Mode
 from common.raster.kernel import draw_body
-from common.raster.silhouette_report import pack
+from common.raster.silhouette_report import silhouette_view, with_person
 from common.rig.camera import PAPER_ROTATIONS
 from viewer.paper.posed_model import view_at
 from viewer.stick.stick_fit import Stick, expected, fit, fit_of
@@ -160,13 +162,12 @@ def test_a_speck_is_fitted_without_complaint_or_refused_in_words() -> None:
 def test_a_fit_travels_in_a_report() -> None:
     mask = drawn(stick_pose({}))
     stick = fit(mask, None, STATURE_PX, DEFAULT)
-    report = Report(
-        frame=0, captured_s=0.0, clock_s=0.0, viewer=1, width=320, height=240,
-        silhouette=pack(mask), box=None, fit=fit_of(stick),
-    )  # fmt: skip
-    heard = decode(encode(report), Report)
-    assert isinstance(heard.fit, Fit)
-    assert np.allclose(heard.fit.joints_px, stick.joints_px)
+    view = silhouette_view(1, mask)
+    (person,) = view.people
+    person = msgspec.structs.replace(person, stick=fit_of(stick))
+    (heard,) = decode(encode(with_person(view, person)), View).people
+    assert isinstance(heard.stick, Fit)
+    assert np.allclose(heard.stick.joints_px, stick.joints_px)
 
 
 @pytest.mark.parametrize(("mode", "most"), [("default", 0.04), ("thesis", 0.07)])

@@ -6,8 +6,8 @@ import pytest
 from posing import BODY, box_around, picture, posed
 from stick_posing import STATURE_PX, drawn, stick_pose
 
+from common.body.observation import Observation
 from common.body.proportions import thesis_bdp
-from common.bus.messages import Report
 from common.method import DEFAULT
 from common.raster.silhouette_report import pack
 from common.raster.similarity import Mask
@@ -21,11 +21,14 @@ from viewer.stick.stick_report import with_stick
 ROTATION = np.array(PAPER_ROTATIONS[1])
 
 
-def report_of(mask: Mask) -> Report:
-    return Report(
-        frame=3, captured_s=0.2, clock_s=0.2, viewer=2, width=mask.shape[1], height=mask.shape[0],
-        silhouette=pack(mask), box=box_around(mask),
-    )  # fmt: skip
+def seen_as(mask: Mask) -> Observation:
+    return Observation(
+        width=mask.shape[1],
+        height=mask.shape[0],
+        silhouette=pack(mask),
+        box=box_around(mask),
+        area_px=int(mask.sum()),
+    )
 
 
 def known_body() -> ExpectedBody:
@@ -49,21 +52,21 @@ def asked(
     monkeypatch.setattr(stick_fit, "fit", fit)
     mask = np.zeros((140, 160), np.bool_)
     mask[20:120, 70:80] = True
-    report = report_of(mask)
-    assert with_stick(report, mask, ROTATION, known, standing, DEFAULT) is report
+    person = seen_as(mask)
+    assert with_stick(person, mask, ROTATION, known, standing, DEFAULT) is person
     return got[0]
 
 
 def test_the_report_has_the_fit_and_its_score() -> None:
     mask = drawn(stick_pose({"r_upper_arm": 200.0, "r_lower_arm": 190.0}))
-    report = with_stick(report_of(mask), mask, ROTATION, None, None, DEFAULT)
+    person = with_stick(seen_as(mask), mask, ROTATION, None, None, DEFAULT)
     tall = float(np.flatnonzero(mask.any(axis=1)).size)
     fitted = stick_fit.fit(mask, None, tall, DEFAULT)
-    assert report.fit == stick_fit.fit_of(fitted)
-    assert report.score == fitted.score > 0.85
-    assert report.fit is not None
-    assert report.fit.stature_px == pytest.approx(STATURE_PX, rel=0.05)
-    assert msgspec.structs.replace(report, fit=None, score=0.0) == report_of(mask)
+    assert person.stick == stick_fit.fit_of(fitted)
+    assert person.stick is not None
+    assert person.stick.score == fitted.score > 0.85
+    assert person.stick.stature_px == pytest.approx(STATURE_PX, rel=0.05)
+    assert msgspec.structs.replace(person, stick=None) == seen_as(mask)
 
 
 def test_a_stature_is_what_is_seen_where_nothing_is_known(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -93,5 +96,5 @@ def test_a_film_that_was_looked_at_knows_the_stature_at_these_feet(
 def test_a_silhouette_without_a_body_leaves_the_report_as_it_is() -> None:
     mask = drawn(stick_pose({}))
     flat = Standing(0.0, 0.0, 0.0, 0.0, 0.0)
-    report = report_of(mask)
-    assert with_stick(report, picture(posed()), ROTATION, None, flat, DEFAULT) is report
+    person = seen_as(mask)
+    assert with_stick(person, picture(posed()), ROTATION, None, flat, DEFAULT) is person

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from posing import posed
-from staging import report
+from staging import observation
 from test_single_view import RIG, sight_of
 
 from common.body.body import JOINT_NAMES, LIMB_ENDS, Vector
@@ -44,7 +44,7 @@ def outline(joints_m: Vector, girth: float) -> Mask:
 
 
 def sight(mask: Mask) -> Sight:
-    return sight_of(report(1, mask), printed=False)
+    return sight_of(observation(mask), printed=False)
 
 
 @pytest.mark.parametrize("girth", GIRTHS)

@@ -8,7 +8,7 @@ from staging import report
 
 from common.bus.control_messages import Ended
 from common.bus.inbox import Inbox
-from common.bus.messages import Report
+from common.bus.messages import View
 from integrator.hearing.subscriber import GATHER_S, OVERDUE_PERIODS, Subscriber
 
 PERIOD_S = 1 / 15
@@ -46,7 +46,7 @@ def test_a_last_report_that_comes_as_the_wait_runs_out_keeps_its_partner(
     assert subscriber.instants() == []
     late = [report(1, clock_s=now_s), OVER[0]]
 
-    def runs_out(inbox: Inbox[Report], timeout_s: float) -> Report | None:
+    def runs_out(inbox: Inbox[View], timeout_s: float) -> View | None:
         found = wait(inbox, timeout_s)
         while found is None and late:
             bus.publish(late.pop(0))

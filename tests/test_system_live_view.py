@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from common.bus.messages import Landmarks
+from common.body.observation import Landmarks
 from common.rig.upright import Upright
 from common.video.clip_facts import ClipView
 from common.video.pictures import CameraLost, Decoded, Ending, Wanted

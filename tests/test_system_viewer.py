@@ -12,11 +12,12 @@ import numpy as np
 import pytest
 from local_bus import LocalBus
 
+from common.body.observation import Landmarks
 from common.bus import clock
 from common.bus.clock import Exchange
 from common.bus.control_messages import Answer, ClockAnswer, ClockQuestion, Command, Ended, Pulse
 from common.bus.inbox import Alive
-from common.bus.messages import Guide, Landmarks, Picture, Report
+from common.bus.messages import Guide, Picture, View
 from common.bus.process import ProcessContext
 from common.config.settings import Settings
 from common.method import METHODS
@@ -128,7 +129,7 @@ class Room:
 
     def __init__(self, patch: pytest.MonkeyPatch) -> None:
         self.bus, self.guides, self.hurried = LocalBus(), [], []  # type: ignore[var-annotated]
-        self.reports, self.ended = self.bus.subscribe(Report), self.bus.subscribe(Ended)
+        self.reports, self.ended = self.bus.subscribe(View), self.bus.subscribe(Ended)
         self.pulses, self.pictures = self.bus.subscribe(Pulse), self.bus.subscribe(Picture)
         self.answers = self.bus.subscribe(Answer)
         patch.setattr(track, "step", self.step)
@@ -138,9 +139,9 @@ class Room:
         self.guides.append(None if given is None else given.frames)
         self.hurried.append(shown.hurried)
         self.bus.publish(guide((0, shown.index)))
-        report = Report(
+        report = View(
             frame=shown.index, captured_s=shown.captured_s, clock_s=shown.clock_s, viewer=2,
-            width=8, height=1, silhouette=b"\0", box=None,
+            width=8, height=1,
         )  # fmt: skip
         return state, report
 

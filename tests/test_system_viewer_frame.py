@@ -5,10 +5,11 @@ from typing import Any
 import msgspec
 import numpy as np
 import pytest
-from staging import PERSON
+from staging import PERSON, person_of
 
 from common.body.body import JOINT_NAMES
-from common.bus.messages import Box, Guide, Landmarks
+from common.body.observation import Box, Landmarks
+from common.bus.messages import Guide
 from common.config.settings import Settings
 from common.method import DEFAULT, PAPER, THESIS, Method
 from common.raster.silhouette_report import unpack
@@ -155,11 +156,12 @@ def test_a_report_tells_what_the_silhouette_shows_and_when() -> None:
     mask = np.zeros((HIGH, WIDE), np.bool_)
     mask[10:50, 20:30] = True
     box = Box(left=20, right=29, top=10, bottom=49)
-    report = track._report_of(2, frame(), Seen(mask, box, 400, 3, cut=True))
+    report = track._view_of(2, frame(), Seen(mask, box, 400, 3, cut=True), None)
     assert (report.frame, report.viewer, report.width, report.height) == (7, 2, WIDE, HIGH)
     assert (report.captured_s, report.clock_s, report.next_s) == (0.5, 1000.5, 0.6)
-    assert (report.box, report.area_px, report.blobs, report.cut) == (box, 400, 3, True)
-    assert np.array_equal(unpack(report), mask)
+    person = person_of(report)
+    assert (person.box, person.area_px, report.blobs, person.cut) == (box, 400, 3, True)
+    assert np.array_equal(unpack(person), mask)
     assert track._middle_px(box) == (25.0, 30.0)
     assert track._middle_px(None) is None
 
@@ -172,7 +174,7 @@ def test_a_picture_that_shows_no_scene_is_reported_and_not_looked_at(
     monkeypatch.setattr(camera_fault, "step", lambda *_: (watched, "black"))
     monkeypatch.setattr(silhouette, "step", lambda *_: pytest.fail("it was looked at"))
     found, report, mask = track.look(state, frame(), guide())
-    assert (report.fault, report.box, report.width, report.height) == ("black", None, WIDE, HIGH)
+    assert (report.fault, report.people, report.width, report.height) == ("black", (), WIDE, HIGH)
     assert mask.shape == (HIGH, WIDE)
     assert not mask.any()
     assert found == state._replace(fault=watched)
@@ -221,7 +223,8 @@ def test_a_frame_is_cut_out_held_against_its_landmarks_and_remembered(
     assert stages.told["near_px"] == (41.0, 32.0)
     assert stages.told["corrected"] == (stages.seen, None, 0.15)
     assert "without" not in stages.told
-    assert (report.area_px, report.fault, report.landmarks) == (400, "", None)
+    person = person_of(report)
+    assert (person.area_px, report.fault, person.landmarks) == (400, "", None)
     assert mask is stages.seen.mask
     assert found.silhouette.frames == 5
     assert found.near_px == (25.0, 30.0)
@@ -237,7 +240,8 @@ def test_what_the_landmarks_say_is_a_thing_is_left_out_of_report_and_memory(
     assert (after, before) == (5, 0)
     assert picture is shown.picture
     assert things is stages.things
-    assert (report.area_px, report.box) == (200, stages.less.box)
+    person = person_of(report)
+    assert (person.area_px, person.box) == (200, stages.less.box)
     assert mask is stages.less.mask
     assert found.silhouette.frames == 99
     assert found.near_px == (22.5, 30.0)
@@ -284,7 +288,7 @@ def test_who_is_nobody_starts_the_search_anew() -> None:
     state = track.init(setup(PAPER), room())
     state = state._replace(search=state.search._replace(found="before"))  # type: ignore[arg-type]
     nobody = Seen(np.zeros((HIGH, WIDE), np.bool_), None, 0, 0, cut=False)
-    report = track._report_of(2, frame(), nobody)
+    report = track._view_of(2, frame(), nobody, None)
     found, told = track.describe(state, report, nobody.mask, None)
     assert found.search.found is None
     assert told is report

@@ -1,14 +1,13 @@
 """A camera that hangs, told by people who walk before it, held against the camera that saw them."""
 
-import msgspec
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
-from staging import report
+from staging import observation
 
-from common.bus.messages import Box
+from common.body.observation import Box
 from common.rig.camera import Camera, arrays_of, as_matrix, as_row, centre, project
 from integrator.proposal.silhouette_window import standing_m
 from integrator.rig.assumed_rig import FOCAL_SHARE
@@ -92,7 +91,7 @@ def test_whatever_was_seen_there_is_a_camera_before_it_above_the_floor(
 
 def test_a_live_run_of_one_view_begins_with_a_camera_above_the_floor() -> None:
     """Who comes in far away, below a camera under the ceiling, stood 1 m before it."""
-    seen = msgspec.structs.replace(report(1), box=Box(70, 80, 5, 40))
+    seen = observation(box=Box(70, 80, 5, 40))
     camera = assumed_rig_of_one(seen, STATURE_M).cameras[0]
     assert centre(camera)[1] > 0.5
     mask = np.zeros((120, 160), np.bool_)

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from common.bus.messages import Landmarks, ViewerNumber
+from common.body.observation import Landmarks
+from common.bus.messages import ViewerNumber
 from common.config.settings import Settings
 from common.method import DEFAULT, PAPER, Method
 from common.rig.camera import Camera, Rig

@@ -17,8 +17,10 @@ from staging import (
     RIG,
     Stage,
     between,
+    changed,
     exact,
     opening,
+    person_of,
     silhouettes,
     squatting,
     standing,
@@ -26,9 +28,10 @@ from staging import (
 
 from common.body.body import ANGLE_NAMES, POSE_INDEX, Vector
 from common.body.kinematics import joints
+from common.body.observation import Landmarks, Observation, Search
 from common.body.proportions import body_vector, stature
 from common.bus.message_codec import decode, encode
-from common.bus.messages import Guide, Landmarks, Report, ViewerNumber
+from common.bus.messages import Guide, View, ViewerNumber
 from common.method import DEFAULT, METHODS, Method
 from common.raster.silhouette_report import unpack
 from common.raster.similarity import Mask
@@ -93,9 +96,18 @@ def guide(pose: Vector, **said: object) -> Guide:
     return Guide(**{**given, **said})  # type: ignore[arg-type]
 
 
-def looked(number: ViewerNumber, truth: Vector, told: Guide | None) -> Report:
-    _, report = track.step(viewer(number), frame(silhouettes(truth)[number - 1]), told)
-    return report
+def looked(number: ViewerNumber, truth: Vector, told: Guide | None) -> Observation:
+    _, view = track.step(viewer(number), frame(silhouettes(truth)[number - 1]), told)
+    return person_of(view)
+
+
+def searched(person: Observation) -> Search:
+    assert person.search is not None
+    return person.search
+
+
+def landmarks_in(view: View) -> Landmarks | None:
+    return None if view.person is None else view.person.landmarks
 
 
 def test_the_stages_follow_each_other_as_in_the_paper(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -133,8 +145,8 @@ def test_viewer_1_begins_as_the_facade_and_viewer_2_as_the_flank(
 
 def test_a_report_tells_the_angles_that_its_view_can_see() -> None:
     """P30, P35, P51: shoulders' theta_X from the flank; theta_Y, theta_Z, elbow from the front."""
-    facade = looked(1, standing(), guide(standing())).angles_deg
-    flank = looked(2, standing(), guide(standing())).angles_deg
+    facade = searched(looked(1, standing(), guide(standing()))).angles_deg
+    flank = searched(looked(2, standing(), guide(standing()))).angles_deg
     arms = {f"{side}_{name}" for side in "rl" for name in ("shoulder_y", "shoulder_z", "elbow_x")}
     hips_z, bends = {"r_hip_z", "l_hip_z"}, {"r_hip_x", "l_hip_x", "r_knee_x", "l_knee_x"}
     assert set(facade) == arms | hips_z | bends
@@ -145,11 +157,9 @@ def test_a_report_tells_the_angles_that_its_view_can_see() -> None:
 def test_an_empty_silhouette_is_nobody_whatever_it_scores() -> None:
     """M25: no position, no angles, score 0; the next frame is met as usual."""
     state, report = track.step(viewer(1), frame(NOBODY), guide(standing()))
-    assert report.box is None
-    assert report.root_px is None
-    assert (report.score, report.matches, report.angles_deg) == (0.0, 0, {})
+    assert report.people == ()
     _, after = track.step(state, frame(silhouettes(standing())[0], 1), None)
-    assert after.root_px is not None
+    assert person_of(after).search is not None
 
 
 def test_a_silhouette_travels_as_it_was_seen() -> None:
@@ -164,11 +174,11 @@ def test_a_followed_body_is_found_where_and_how_it_stands(number: ViewerNumber) 
     before = standing((0.15, -0.05), r_shoulder_z=130.0, l_hip_z=180.0)
     report = looked(number, truth, guide(before))
     true_px = project(RIG.cameras[number - 1], truth[None, :3])[0]
-    assert report.root_px == pytest.approx(true_px, abs=2.0)
-    assert report.score > 0.8
+    assert searched(report).root_px == pytest.approx(true_px, abs=2.0)
+    assert searched(report).score > 0.8
     if number == 1:
-        assert report.angles_deg["r_shoulder_z"] == pytest.approx(120.0, abs=4.0)
-        assert report.angles_deg["l_hip_z"] == pytest.approx(190.0, abs=4.0)
+        assert searched(report).angles_deg["r_shoulder_z"] == pytest.approx(120.0, abs=4.0)
+        assert searched(report).angles_deg["l_hip_z"] == pytest.approx(190.0, abs=4.0)
 
 
 @pytest.mark.parametrize("status", [None, "empty", "lost"])
@@ -179,11 +189,10 @@ def test_a_body_that_nobody_knows_of_is_found_with_its_arms_wherever_they_are(
     truth = standing((0.3, 0.2), r_shoulder_z=60.0, l_shoulder_z=250.0)
     told = None if status is None else guide(posed(), status=status, root_px=((0, 0), (0, 0)))
     report = looked(1, truth, told)
-    assert report.angles_deg["r_shoulder_z"] == pytest.approx(60.0, abs=6.0)
-    assert report.angles_deg["l_shoulder_z"] == pytest.approx(250.0, abs=6.0)
-    assert report.root_px is not None
+    assert searched(report).angles_deg["r_shoulder_z"] == pytest.approx(60.0, abs=6.0)
+    assert searched(report).angles_deg["l_shoulder_z"] == pytest.approx(250.0, abs=6.0)
     true_px = project(RIG.cameras[0], truth[None, :3])[0]
-    assert report.root_px == pytest.approx(true_px, abs=4.0)
+    assert searched(report).root_px == pytest.approx(true_px, abs=4.0)
 
 
 def test_the_opening_posture_is_measured_until_it_is_known() -> None:
@@ -218,7 +227,7 @@ def test_no_silhouette_however_odd_stops_a_viewer(
         )
     told = guide(standing()) if known else None
     _, report = track.step(viewer(number), frame(mask), told)
-    assert decode(encode(report), Report) == report
+    assert decode(encode(report), View) == report
 
 
 def test_a_person_partly_outside_is_not_measured() -> None:
@@ -238,9 +247,9 @@ def test_a_report_says_which_guide_it_used_and_a_late_one_still_serves() -> None
             known = standing() if t < late else poses[t - late]
             told = guide(known, frames=(t - late, t - late))
             state, report = track.step(state, frame(silhouettes(pose)[0], t), told)
-        states[late] = report
-    for report in states.values():
-        assert report.angles_deg["r_shoulder_z"] == pytest.approx(120.0, abs=4.0)
+        states[late] = person_of(report)
+    for person in states.values():
+        assert searched(person).angles_deg["r_shoulder_z"] == pytest.approx(120.0, abs=4.0)
 
 
 def test_the_vote_follows_the_width_of_the_trunk_with_hysteresis() -> None:
@@ -266,13 +275,13 @@ def test_a_squat_is_told_in_metres_not_in_pixels(place_m: tuple[float, float]) -
         hip_deg = float(np.degrees(np.arccos(1 - drop_m / NAVEL_M)))
         truth = squatting(hip_deg)
         truth[POSE_INDEX["x"]], truth[POSE_INDEX["z"]] = place_m
-        assert looked(1, truth, guide(truth)).squatting == squats
+        assert searched(looked(1, truth, guide(truth))).squatting == squats
 
 
 def test_a_prior_body_never_squats() -> None:
     """P33: the height in the opening posture is what the navel is compared with."""
     truth = squatting(60.0)
-    assert not looked(1, truth, guide(truth, measured=False)).squatting
+    assert not searched(looked(1, truth, guide(truth, measured=False))).squatting
 
 
 def kick_as_followed(method: Method) -> float:
@@ -282,7 +291,8 @@ def kick_as_followed(method: Method) -> float:
     for index, hip_deg in enumerate(range(0, 31, 10)):
         truth = standing(r_hip_x=float(hip_deg))
         state, report = track.step(state, frame(silhouettes(truth)[1], index), guide(standing()))
-        found = [report.angles_deg["r_hip_x"], report.angles_deg["l_hip_x"]]
+        angles_deg = searched(person_of(report)).angles_deg
+        found = [angles_deg["r_hip_x"], angles_deg["l_hip_x"]]
     return max(found)
 
 
@@ -302,24 +312,26 @@ def test_the_facade_goes_on_from_its_own_legs_in_a_squat_alone() -> None:
     for index in range(2):
         state, report = track.step(state, frame(silhouettes(standing())[0], index), told)
         told = msgspec.structs.replace(told, pose=tuple(bent.tolist()))
-    assert report.angles_deg["r_hip_x"] == 30.0
+    assert searched(person_of(report)).angles_deg["r_hip_x"] == 30.0
 
 
 def test_the_count_of_matches_is_the_papers_cost() -> None:
     """P27, P40: position, four arm searches of at most 9, two legs of at most 7."""
     report = looked(1, standing(), guide(standing()))
-    assert 13 + 4 * 6 + 2 * 5 <= report.matches <= 2 * (1 + 3 * 6) + 4 * 9 + 2 * 7
+    assert 13 + 4 * 6 + 2 * 5 <= searched(report).matches <= 2 * (1 + 3 * 6) + 4 * 9 + 2 * 7
 
 
 @pytest.mark.parametrize("seen", [True, False], ids=["with an outline", "without one"])
-def test_what_a_source_outside_sees_is_in_the_report_and_stays_there(seen: bool) -> None:
+def test_what_a_source_outside_sees_is_told_of_who_is_there_and_stays(seen: bool) -> None:
     person = landmarks_of(standing())
     state = told_from_outside()
     picture = frame(silhouettes(standing())[0] if seen else NOBODY)
     shown = msgspec.structs.replace(picture, landmarks=(person,))
-    assert track.step(state, shown, None)[1].landmarks == person
-    assert track.step(state, shown, guide(standing()))[1].landmarks == person
-    assert track.step(state, picture, None)[1].landmarks is None
+    for told in (None, guide(standing())):
+        after, view = track.step(state, shown, told)
+        assert landmarks_in(view) == person
+        assert after.landmarks == person
+    assert landmarks_in(track.step(state, picture, None)[1]) is None
 
 
 def test_landmarks_change_nothing_else_of_a_report() -> None:
@@ -329,7 +341,7 @@ def test_landmarks_change_nothing_else_of_a_report() -> None:
     shown = msgspec.structs.replace(picture, landmarks=(person,))
     _, with_them = track.step(state, shown, guide(standing()))
     _, without = track.step(state, picture, guide(standing()))
-    assert msgspec.structs.replace(with_them, landmarks=None) == without
+    assert changed(with_them, landmarks=None) == without
 
 
 def looks_of(monkeypatch: pytest.MonkeyPatch, alone: bool) -> tuple[track.State, list[bool]]:
@@ -356,9 +368,10 @@ def test_in_a_hurry_one_of_two_views_tells_its_outline_alone_and_remembers_who_i
     hurried = msgspec.structs.replace(frame(silhouettes(standing())[0], 1), hurried=True)
     state, second = track.step(state, hurried, None)
     assert looks == [False]
-    assert (first.landmarks, second.landmarks) == (landmarks_of(standing()), None)
-    assert second.silhouette == first.silhouette
-    assert state.landmarks == first.landmarks
+    one, other = person_of(first), person_of(second)
+    assert (one.landmarks, other.landmarks) == (landmarks_of(standing()), None)
+    assert other.silhouette == one.silhouette
+    assert state.landmarks == one.landmarks
 
 
 def test_in_a_hurry_an_only_view_is_looked_at_but_not_in_the_mirror(
@@ -368,7 +381,7 @@ def test_in_a_hurry_an_only_view_is_looked_at_but_not_in_the_mirror(
     picture = frame(silhouettes(standing())[0])
     state, _ = track.step(state, picture, None)
     hurried = msgspec.structs.replace(picture, index=1, hurried=True)
-    assert track.step(state, hurried, None)[1].landmarks == landmarks_of(standing())
+    assert landmarks_in(track.step(state, hurried, None)[1]) == landmarks_of(standing())
     assert looks == [True, False]
 
 
@@ -376,7 +389,7 @@ def test_what_a_source_outside_saw_is_told_in_a_hurry_too() -> None:
     person = landmarks_of(standing())
     picture = frame(silhouettes(standing())[0])
     shown = msgspec.structs.replace(picture, landmarks=(person,), hurried=True)
-    assert track.step(told_from_outside(), shown, None)[1].landmarks == person
+    assert landmarks_in(track.step(told_from_outside(), shown, None)[1]) == person
 
 
 def test_a_viewer_is_a_value() -> None:

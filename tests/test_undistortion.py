@@ -3,10 +3,10 @@
 import msgspec
 import numpy as np
 import pytest
-from rolling import BODY, ROLLED, on_one_leg, outlines, told
+from rolling import BODY, ROLLED, on_one_leg, outlines, person_in, told
 
+from common.body.observation import Observation, Search
 from common.bus.instant import Instant
-from common.bus.messages import Report
 from common.raster.silhouette_report import unpack
 from common.raster.similarity import Mask, similarity
 from common.rig.camera import project
@@ -14,7 +14,7 @@ from integrator.proposal import pose_proposal
 from integrator.rig.undistortion import (
     undistorted,
     undistorted_instant,
-    undistorted_report,
+    undistorted_observation,
     undistorted_rig,
 )
 
@@ -39,10 +39,10 @@ def bent(mask: Mask, n: int) -> Mask:
     return seen
 
 
-def at(rows: slice, columns: slice) -> Report:
+def at(rows: slice, columns: slice) -> Observation:
     mask = np.zeros((HEIGHT, WIDTH), np.bool_)
     mask[rows, columns] = True
-    return told(1, mask)
+    return person_in(mask)
 
 
 def test_a_bent_silhouette_is_the_straight_one_again() -> None:
@@ -64,19 +64,20 @@ def test_the_navel_goes_where_a_straight_lens_shows_it() -> None:
     place_m = np.array([[0.6, 1.7, 0.2]])
     bent_px, straight_px = (project(rig.cameras[0], place_m)[0] for rig in (BENT, ROLLED))
     assert np.hypot(*(bent_px - straight_px)) > 1.0
-    report = msgspec.structs.replace(told(1, outlines(on_one_leg())[0]), root_px=tuple(bent_px))
-    assert undistorted_report(report, BENT.cameras[0]).root_px == pytest.approx(
-        straight_px, abs=0.01
-    )
+    person = person_in(outlines(on_one_leg())[0])
+    search = Search((bent_px[0], bent_px[1]), {}, False, 0.0, 0)
+    person = msgspec.structs.replace(person, search=search)
+    straight = undistorted_observation(person, BENT.cameras[0]).search
+    assert straight is not None
+    assert straight.root_px == pytest.approx(straight_px, abs=0.01)
 
 
 def test_what_the_straight_picture_does_not_hold_is_cut() -> None:
     """Four pixels from the side of the bent one somebody is whole, and not in the straight one."""
     report = at(slice(100, 140), slice(4, 30))
     assert not report.cut
-    found = undistorted_report(report, BENT.cameras[0])
+    found = undistorted_observation(report, BENT.cameras[0])
     assert found.cut
-    assert found.box is not None
     assert found.box.left == 0
     assert found.area_px == unpack(found).sum()
 
@@ -85,7 +86,7 @@ def test_somebody_of_whom_nothing_would_be_left_is_still_somebody() -> None:
     """Who enters from a side, seen in the lens's corner alone: a pose is proposed all the same."""
     report = at(slice(0, 6), slice(0, 4))
     assert not undistorted(unpack(report), BENT.cameras[0]).any()
-    found = undistorted_report(report, BENT.cameras[0])
+    found = undistorted_observation(report, BENT.cameras[0])
     assert found == report
     shown = pose_proposal.step(None, BODY, undistorted_rig(BENT), (found, None), 1 / 15)
     assert np.isfinite(shown.joints_m).all()

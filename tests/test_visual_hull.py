@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 from posing import posed
-from rolling import ROLLED, on_one_leg, outlines, told
+from rolling import ROLLED, on_one_leg, outlines, person_in
 
 from common.raster.kernel import view_of
 from common.raster.silhouette_report import unpack
@@ -20,11 +20,11 @@ from common.raster.kernel import match
 from integrator.fit import visual_hull
 from integrator.integrator_warmup import warm_up
 warm_up(Settings(), (160, 120))
-from rolling import BODY, ROLLED, on_one_leg, outlines, told
+from rolling import BODY, ROLLED, on_one_leg, outlines, person_in
 from common.body.proportions import body_vector
 from integrator.fit.silhouette_pair import poorest
 known = len(match.signatures)
-seen = tuple(told(n, mask) for n, mask in zip((1, 2), outlines(on_one_leg())))
+seen = tuple(person_in(mask) for mask in outlines(on_one_leg()))
 poorest(on_one_leg(), body_vector(BODY), ROLLED, seen)
 print(len(visual_hull._carve.signatures), len(match.signatures) - known)
 """
@@ -45,7 +45,7 @@ def test_a_person_alone_is_kept_and_reported_as_before() -> None:
         first, second = outlines(pose)
         for before, after in zip((first, second), kept(first, second), strict=True):
             assert share(after, before) > 0.97
-        pair = (told(1, first), told(2, second))
+        pair = (person_in(first), person_in(second))
         assert visual_hull.cleaned(ROLLED, pair) == (pair, False)
 
 
@@ -55,11 +55,11 @@ def test_what_one_view_alone_shows_goes_and_the_border_is_free_again() -> None:
     glare = np.zeros_like(first)
     glare[200:240, 0:40] = True
     spoilt = first | glare
-    found = visual_hull.cleaned(ROLLED, (told(1, spoilt), told(2, second)))
+    found = visual_hull.cleaned(ROLLED, (person_in(spoilt), person_in(second)))
     assert found.clutter
     report = found.seen[0]
     assert report is not None
-    assert told(1, spoilt).cut
+    assert person_in(spoilt).cut
     assert not report.cut
     assert share(unpack(report), first) > 0.98
     assert share(unpack(report), glare & ~first) < 0.02
@@ -101,9 +101,9 @@ def test_outlines_without_a_common_place_are_left_alone() -> None:
     first, second = outlines(on_one_leg())
     corner = np.zeros_like(second)
     corner[:10, :10] = True
-    pair = (told(1, first), told(2, corner))
+    pair = (person_in(first), person_in(corner))
     assert visual_hull.cleaned(ROLLED, pair) == (pair, False)
-    alone = (told(1, first), None)
+    alone = (person_in(first), None)
     assert visual_hull.cleaned(ROLLED, alone) == (alone, False)
 
 
@@ -175,7 +175,7 @@ def test_little_clutter_is_left_as_it_is() -> None:
         spoilt = second.copy()
         rows = int(np.ceil(share * visual_hull.CLUTTER_SHARE * area / 20))
         spoilt[10 : 10 + rows, 0:20] = True
-        pair = (told(1, first), told(2, spoilt))
+        pair = (person_in(first), person_in(spoilt))
         found = visual_hull.cleaned(ROLLED, pair)
         assert found.clutter == is_clutter
         if not is_clutter:

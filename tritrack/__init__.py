@@ -1,6 +1,7 @@
 """The front door: the commands, the processes that they start, and what programs import."""
 
 from typing import TYPE_CHECKING, Any
+from warnings import warn
 
 if TYPE_CHECKING:
     from runtime.client import (
@@ -9,8 +10,8 @@ if TYPE_CHECKING:
         POSE_INDEX,
         Body,
         Posture,
-        Report,
         Subscription,
+        View,
         load_run,
         subscribe,
         track,
@@ -25,9 +26,9 @@ __all__ = [
     "Bodies",
     "Body",
     "Posture",
-    "Report",
     "Subscription",
     "Tracker",
+    "View",
     "export",
     "load_run",
     "subscribe",
@@ -37,6 +38,9 @@ __all__ = [
 
 def __getattr__(name: str) -> Any:
     """What programs import, loaded when it is asked for: a command must heed signals before."""
+    if name == "Report":
+        warn("tritrack.Report is now View: use tritrack.View", DeprecationWarning, stacklevel=2)
+        name = "View"
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     if name in ("Bodies", "Tracker"):

@@ -8,7 +8,7 @@ from rich.console import Console
 from animator.page.live import LivePage
 from animator.scene import Snapshot
 from common.bus.instant import Instant
-from common.bus.messages import Report
+from common.bus.messages import View
 from common.bus.process import ProcessContext, process
 from common.npz_file import Facts
 from common.rig.camera import Rig
@@ -65,6 +65,6 @@ def show(page: LivePage, recording: Recording) -> int:
     return len(recording.bodies)
 
 
-def _reports(instant: Instant | None) -> dict[int, Report]:
+def _reports(instant: Instant | None) -> dict[int, View]:
     views = () if instant is None else instant.views
     return {report.viewer: report for report in views if report}

@@ -15,7 +15,7 @@ from common.bus.bus import Bus, open_hub
 from common.bus.control_messages import Cameras
 from common.bus.instant import Instant
 from common.bus.message_codec import encode
-from common.bus.messages import Body, Message, Moment, Report
+from common.bus.messages import Body, Message, Moment, View
 from common.bus.rate import wait_until
 from common.config.part_settings import BusSettings
 from common.method import METHODS
@@ -104,15 +104,15 @@ def instants(recording: Recording) -> Iterator[tuple[Body, Instant]]:
             yield body, Instant(tuple(now))
 
 
-def _by_frame(reports: Sequence[Report]) -> defaultdict[int, list[Report]]:
+def _by_frame(reports: Sequence[View]) -> defaultdict[int, list[View]]:
     """A viewer that is started again may count its frames anew."""
-    by_frame = defaultdict[int, list[Report]](list)
+    by_frame = defaultdict[int, list[View]](list)
     for report in reports:
         by_frame[report.frame].append(report)
     return by_frame
 
 
-def _near(reports: Sequence[Report], body: Body, tolerance_s: float) -> Report | None:
+def _near(reports: Sequence[View], body: Body, tolerance_s: float) -> View | None:
     """The last report that was taken when the body was."""
     near = [r for r in reports if abs(r.captured_s - body.captured_s) <= tolerance_s + 1e-9]
     return near[-1] if near else None

@@ -2,7 +2,7 @@
 
 import msgspec
 
-from common.bus.messages import Landmarks
+from common.body.observation import Landmarks
 from common.rig.upright import Upright
 from common.video.pictures import Image
 

@@ -3,7 +3,8 @@
 from typing import Final, NamedTuple
 
 from common.body.body import Bdp
-from common.bus.messages import Facing, Guide, Pixel, ViewerNumber
+from common.body.observation import Facing, Pixel
+from common.bus.messages import Guide, ViewerNumber
 
 EXPECTED: Final = ("measuring", "tracking", "predicted")
 """Guides with these states say where the body is; otherwise it is looked for afresh."""

@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from typing import Final
 
 from common.bus.inbox import Alive
-from common.bus.messages import Report
+from common.bus.messages import View
 
 HUB: Final = "integrator"
 MOST: Final = 128
@@ -17,14 +17,14 @@ class ResendBuffer:
 
     def __init__(self) -> None:
         """Nothing was said."""
-        self._kept: deque[Report] = deque(maxlen=MOST)
+        self._kept: deque[View] = deque(maxlen=MOST)
         self._gone = False
 
-    def said(self, report: Report) -> None:
+    def said(self, report: View) -> None:
         """Keep a report that was published."""
         self._kept.append(report)
 
-    def again(self, heard: int, alive: Iterable[Alive]) -> list[Report]:
+    def again(self, heard: int, alive: Iterable[Alive]) -> list[View]:
         """What is to be said once more, oldest first: nothing but when the integrator came back.
 
         Args:

@@ -7,18 +7,11 @@ import msgspec
 import numpy as np
 
 from common.body.body import JOINT_NAMES
-from common.bus.messages import (
-    MOTION_S,
-    Box,
-    Guide,
-    Landmarks,
-    Pixel,
-    Report,
-    ViewerNumber,
-)
+from common.body.observation import Box, Landmarks, Observation, Pixel
+from common.bus.messages import MOTION_S, Guide, View, ViewerNumber
 from common.config.settings import Settings
 from common.method import Method
-from common.raster.silhouette_report import pack, unpack
+from common.raster.silhouette_report import mask_of, pack, with_person
 from common.raster.similarity import Mask
 from common.rig.camera import Camera
 from viewer import camera_fault
@@ -132,7 +125,7 @@ def _watched(
     return moved_camera.init(background, lens_of(setup.camera, (wide, high)), begun)
 
 
-def step(state: State, frame: CapturedFrame, guide: Guide | None) -> tuple[State, Report]:
+def step(state: State, frame: CapturedFrame, guide: Guide | None) -> tuple[State, View]:
     """One frame: silhouette, opening posture, facing, position, arms, legs (P23).
 
     A picture that shows no scene (frozen, black, white) is told and not looked at.
@@ -142,12 +135,11 @@ def step(state: State, frame: CapturedFrame, guide: Guide | None) -> tuple[State
         frame: The picture.
         guide: What the integrator made of the frame before; None at the start.
     """
-    state, report, mask = look(state, frame, guide)
-    return describe(state, report, mask, guide)
+    return describe(*look(state, frame, guide), guide)
 
 
-def look(state: State, frame: CapturedFrame, guide: Guide | None) -> tuple[State, Report, Mask]:
-    """The silhouette and the landmarks of a frame, as a report, and the mask (H, W).
+def look(state: State, frame: CapturedFrame, guide: Guide | None) -> tuple[State, View, Mask]:
+    """The silhouette and the landmarks of a frame, as a message, and the mask (H, W).
 
     Args:
         state: What this viewer remembers.
@@ -158,8 +150,8 @@ def look(state: State, frame: CapturedFrame, guide: Guide | None) -> tuple[State
     watched, fault = camera_fault.step(state.fault, frame.picture, frame.captured_s, moving_since_s)
     state = state._replace(fault=watched)
     if fault:
-        report = without_person(state.setup.viewer, frame)
-        return state, msgspec.structs.replace(report, fault=fault), unpack(report)
+        view = without_person(state.setup.viewer, frame)
+        return state, msgspec.structs.replace(view, fault=fault), mask_of(view)
     state = _followed(_patched(state, frame.index), frame)
     remembered, seen = silhouette.step(state.silhouette, frame.picture, _near_px(state, guide))
     landmarks = _landmarks(state, frame, seen)
@@ -169,13 +161,13 @@ def look(state: State, frame: CapturedFrame, guide: Guide | None) -> tuple[State
             remembered, state.silhouette, frame.picture, held.things
         )
     seen = held.seen
-    report = _report_of(state.setup.viewer, frame, seen)
-    shift = None if state.moved is None else state.moved.shift
-    report = msgspec.structs.replace(report, landmarks=landmarks, shift=shift)
+    view = _view_of(state.setup.viewer, frame, seen, landmarks)
+    if state.moved is not None:
+        view = msgspec.structs.replace(view, shift=state.moved.shift)
     if _is_left_out(state.setup, frame):
         landmarks = state.landmarks
     state = state._replace(silhouette=remembered, near_px=_middle_px(seen.box), landmarks=landmarks)
-    return state, report, seen.mask
+    return state, view, seen.mask
 
 
 def _moving_since_s(state: State, guide: Guide | None) -> float | None:
@@ -187,53 +179,64 @@ def _moving_since_s(state: State, guide: Guide | None) -> float | None:
     return guide.captured_s - MOTION_S if moves else None
 
 
-def describe(state: State, report: Report, mask: Mask, guide: Guide | None) -> tuple[State, Report]:
-    """A silhouette's report with all else that it shows.
+def describe(state: State, view: View, mask: Mask, guide: Guide | None) -> tuple[State, View]:
+    """What `look` gave, with all else that its silhouette shows.
 
     Args:
         state: What this viewer remembers.
-        report: From `look`.
+        view: From `look`.
         mask: (H, W) the silhouette.
         guide: What the integrator made of the frame before; None at the start.
     """
-    setup, search = state.setup, state.search
-    if report.box is None:
-        return state._replace(search=search._replace(found=None)), report
+    setup, search, person = state.setup, state.search, view.person
+    if person is None:
+        return state._replace(search=search._replace(found=None)), view
     facing = search.vote if guide is None else guide.facing[setup.viewer - 1]
-    measure, refusal = opening_measure(mask, report, guide, facing)
-    report = msgspec.structs.replace(report, vote=search.vote, measure=measure, refusal=refusal)
+    measure, refusal = opening_measure(mask, person, guide, facing)
+    person = msgspec.structs.replace(person, vote=search.vote, measure=measure, refusal=refusal)
     if setup.method.stick_lifting or (guide is not None and guide.stick):
         known = expected_body(guide, setup.viewer)
-        return state, with_stick(report, mask, search.rotation, known, state.standing, setup.method)
-    if not setup.searches or (guide is not None and guide.proposes):
-        return state, report
-    search, report = pose_search.step(search, report, mask, guide)
-    return state._replace(search=search), report
+        person = with_stick(person, mask, search.rotation, known, state.standing, setup.method)
+    elif setup.searches and not (guide is not None and guide.proposes):
+        search, person = pose_search.step(search, person, mask, guide)
+    return state._replace(search=search), with_person(view, person)
 
 
-def without_person(viewer: ViewerNumber, frame: CapturedFrame) -> Report:
-    """The report on a picture that is not looked at."""
+def without_person(viewer: ViewerNumber, frame: CapturedFrame) -> View:
+    """What is said of a picture that is not looked at."""
     nothing = np.zeros(frame.picture.shape[:2], np.bool_)
-    return _report_of(viewer, frame, Seen(nothing, None, 0, 0, cut=False))
+    return _view_of(viewer, frame, Seen(nothing, None, 0, 0, cut=False), None)
 
 
-def _report_of(viewer: ViewerNumber, frame: CapturedFrame, seen: Seen) -> Report:
-    """What a silhouette alone tells."""
+def _view_of(
+    viewer: ViewerNumber, frame: CapturedFrame, seen: Seen, landmarks: Landmarks | None
+) -> View:
+    """What a silhouette and the landmarks in it tell."""
     height, width = seen.mask.shape
-    return Report(
+    return View(
         frame=frame.index,
         captured_s=frame.captured_s,
         clock_s=frame.clock_s,
         viewer=viewer,
         width=width,
         height=height,
-        silhouette=pack(seen.mask),
-        box=seen.box,
-        area_px=seen.area_px,
+        people=() if seen.box is None else (_person_of(seen, seen.box, landmarks),),
         blobs=seen.blobs,
-        cut=seen.cut,
         next_s=frame.next_s,
         upright=frame.upright,
+    )
+
+
+def _person_of(seen: Seen, box: Box, landmarks: Landmarks | None) -> Observation:
+    height, width = seen.mask.shape
+    return Observation(
+        width=width,
+        height=height,
+        silhouette=pack(seen.mask),
+        box=box,
+        area_px=seen.area_px,
+        cut=seen.cut,
+        landmarks=landmarks,
     )
 
 

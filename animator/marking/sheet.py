@@ -5,7 +5,7 @@ from typing import Any, Final, Literal
 
 import msgspec
 
-from common.bus.messages import Pixel
+from common.body.observation import Pixel
 
 Size = tuple[int, int]
 """Width and height, pixels."""

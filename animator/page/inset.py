@@ -11,8 +11,8 @@ from animator.scene import Figure, half_sizes, limb_colours
 from common.body.body import LIMBS, Vector
 from common.body.kinematics import limb_frames
 from common.body.proportions import body_vector
-from common.bus.messages import Picture, Report
-from common.raster.silhouette_report import unpack
+from common.bus.messages import Picture, View
+from common.raster.silhouette_report import mask_of
 from common.rig.camera import Camera, project
 
 Image = NDArray[np.uint8]
@@ -67,14 +67,14 @@ def limb_contours(camera: Camera, ends_m: NDArray[np.float64]) -> list[Vector]:
     ]
 
 
-def inset(report: Report, picture: Picture | None) -> Image:
+def inset(report: View, picture: Picture | None) -> Image:
     """The silhouette over the picture where there is one, else over NIGHT; WIDTH_PX wide or more.
 
     A picture that cannot be decoded is left out.
     """
     times = math.ceil(WIDTH_PX / report.width)
     size = (report.width * times, report.height * times)
-    seen = cv2.resize(unpack(report).astype(np.float32), size)[:, :, None]
+    seen = cv2.resize(mask_of(report).astype(np.float32), size)[:, :, None]
     shown = _decoded(picture, size)
     if shown is None:
         painted = NIGHT + seen * (SEEN - NIGHT)

@@ -30,17 +30,9 @@ from animator.scene import (
     viewpoint,
 )
 from common.body.body import ANGLES_IN_POSE
-from common.bus.messages import (
-    Body,
-    Facing,
-    Performance,
-    Picture,
-    Posture,
-    Report,
-    ScaleSource,
-    Status,
-)
-from common.raster.silhouette_report import unpack
+from common.body.observation import Facing
+from common.bus.messages import Body, Performance, Picture, Posture, ScaleSource, Status, View
+from common.raster.silhouette_report import mask_of
 from common.rig.camera import Camera, Rig
 from common.rig.upright_camera import as_worked_on
 
@@ -138,9 +130,9 @@ def probabilities(log_likelihoods: Mapping[str, float]) -> dict[str, float]:
     return {name: weight / total for name, weight in weights.items()}
 
 
-def outline_of(report: Report) -> list[Numbers]:
+def outline_of(report: View) -> list[Numbers]:
     """The contours of a silhouette, holes too, in pixels: a pixel's centre is (0.5, 0.5)."""
-    mask = unpack(report).astype(np.uint8)
+    mask = mask_of(report).astype(np.uint8)
     found, _ = cv2.findContours(mask, cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)
     smooth = [cv2.approxPolyDP(contour, SMOOTH_PX, True) for contour in found]
     return [_rounded(contour + 0.5, 1) for contour in smooth if len(contour) > 2]
@@ -162,7 +154,7 @@ def _views(
 
 
 def _view(
-    report: Report, body: Body, limbs: Sequence[NDArray[np.float64]], picture: Picture | None
+    report: View, body: Body, limbs: Sequence[NDArray[np.float64]], picture: Picture | None
 ) -> ShownView:
     own = report.viewer - 1
     joints = [
@@ -182,13 +174,15 @@ def _view(
     )
 
 
-def hint(body: Body, report: Report) -> str:
+def hint(body: Body, report: View) -> str:
     """What the person could do about what this camera sees."""
     if report.fault:
         return f"the picture is {report.fault}"
-    if report.cut:
+    if report.person is None:
+        return ""
+    if report.person.cut:
         return "the person is partly outside the picture"
-    return report.refusal if body.status == "measuring" else ""
+    return report.person.refusal if body.status == "measuring" else ""
 
 
 def _solids(standing: Figure, body: Body) -> list[Numbers]:

@@ -7,7 +7,7 @@ import numpy as np
 
 from common.body.body import Vector
 from common.bus.instant import Instant
-from common.bus.messages import Report, ViewerNumber
+from common.bus.messages import View, ViewerNumber
 from common.rig.camera import Camera, Rig, arrays_of
 from common.rig.turned_camera import turn_of, turned
 from common.rig.upright import Shift
@@ -69,14 +69,14 @@ def init(cameras: int) -> MovedCameras:
 def step(state: MovedCameras, instant: Instant) -> MovedCameras:
     """One instant more."""
     now = tuple(
-        before if report is None or report.fault else _shift(report)
-        for report, before in zip(instant.views, state.now, strict=True)
+        before if view is None or view.fault else _shift(view)
+        for view, before in zip(instant.views, state.now, strict=True)
     )
     return state._replace(now=now)
 
 
-def _shift(report: Report) -> Shift:
-    return AS_IT_WAS if report.shift is None else report.shift
+def _shift(view: View) -> Shift:
+    return AS_IT_WAS if view.shift is None else view.shift
 
 
 def told_by(state: MovedCameras, before: Rig | None, rig: Rig) -> MovedCameras:

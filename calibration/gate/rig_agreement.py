@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 from calibration.tracks.joint_tracks import is_upright
 from calibration.tracks.person_prior import ANKLE_SHARE
 from common.body.body import JOINT_NAMES, OTHER_SIDE, Vector
-from common.bus.instant import TwoViews
-from common.bus.messages import Agreement, Landmarks, Report
+from common.body.observation import Landmarks, Observation
+from common.bus.instant import TwoSeen
+from common.bus.messages import Agreement
 from common.rig.camera import Camera, Rig, arrays_of, rays
 
 SAMPLES, APART_S = 40, 0.15
@@ -71,22 +72,23 @@ class State(NamedTuple):
     told: Agreement | None = None
 
 
-def step(state: State, rig: Rig, seen: TwoViews) -> State:
+def step(state: State, rig: Rig, seen: TwoSeen, now_s: float) -> State:
     """One instant more.
 
     Args:
         state: What was seen before by the same rig.
         rig: Two cameras without distortion.
-        seen: Both views' reports.
+        seen: The person as both see them, without distortion.
+        now_s: When the first of them was taken.
     """
-    first, second = seen
-    if first is None or second is None or not (_is_sure(first) and _is_sure(second)):
+    one, other = seen
+    if one is None or other is None or not (_is_sure(one) and _is_sure(other)):
         return state
-    if 0.0 <= first.captured_s - state.last_s < APART_S:
+    if 0.0 <= now_s - state.last_s < APART_S:
         return state
-    assert first.landmarks is not None
-    assert second.landmarks is not None
-    sample, turned = _sample(rig, first.landmarks, second.landmarks)
+    assert one.landmarks is not None
+    assert other.landmarks is not None
+    sample, turned = _sample(rig, one.landmarks, other.landmarks)
     samples = (*state.samples, sample)[-SAMPLES:]
     facings = (*state.facings_deg, *turned)[-SAMPLES:]
     told = agreement_of(np.array(samples), facings) if len(samples) >= FEWEST else None
@@ -94,7 +96,7 @@ def step(state: State, rig: Rig, seen: TwoViews) -> State:
         last = agreement_of(np.array(samples[-FEWEST:]), facings[-FEWEST:])
         if last.believed <= SUDDEN:  # what was before says nothing of how it is now
             samples, facings, told = samples[-FEWEST:], facings[-FEWEST:], last
-    return State(samples, facings, first.captured_s, told)
+    return State(samples, facings, now_s, told)
 
 
 def agreement_of(samples: NDArray[np.float64], facings_deg: tuple[float, ...]) -> Agreement:
@@ -139,9 +141,9 @@ def _left(value: float, usual: float, never: float) -> float:
     return float(np.interp(value, (usual, never), (1.0, LEAST)))
 
 
-def _is_sure(report: Report) -> bool:
-    seen = report.landmarks
-    if seen is None or report.cut or not is_upright(seen):
+def _is_sure(person: Observation) -> bool:
+    seen = person.landmarks
+    if seen is None or person.cut or not is_upright(seen):
         return False
     return float(np.mean(seen.confidence)) >= SURE
 

@@ -5,7 +5,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from common.bus.instant import Instant
-from common.bus.messages import MOTION_S, Report
+from common.bus.messages import MOTION_S, View
 
 MOVED: Final = 0.15
 """Share of the silhouette's pixels that change from which a person moves. In 95 % of the half
@@ -31,16 +31,16 @@ def init(cameras: int) -> State:
 
 def step(state: State, instant: Instant) -> State:
     """One instant more; a view without a person shows no motion."""
-    return tuple(_with(own, report) for own, report in zip(state, instant.views, strict=True))
+    return tuple(_with(own, view) for own, view in zip(state, instant.views, strict=True))
 
 
-def _with(own: tuple[Shown, ...], report: Report | None) -> tuple[Shown, ...]:
-    if report is None:
+def _with(own: tuple[Shown, ...], view: View | None) -> tuple[Shown, ...]:
+    if view is None:
         return own
-    if report.box is None:
+    if view.person is None:
         return ()
-    own = (*own, Shown(report.captured_s, report.silhouette, report.area_px))
-    old = [n for n, shown in enumerate(own) if report.captured_s - shown.captured_s >= MOTION_S]
+    own = (*own, Shown(view.captured_s, view.person.silhouette, view.person.area_px))
+    old = [n for n, shown in enumerate(own) if view.captured_s - shown.captured_s >= MOTION_S]
     return own[old[-1] :] if old else own
 
 

@@ -8,7 +8,7 @@ import msgspec
 import numpy as np
 
 from common.body.body import Vector
-from common.bus.messages import Pixel
+from common.body.observation import Pixel
 from common.rig.rig_file import CalibrationError
 
 Positive = Annotated[float, msgspec.Meta(gt=0)]

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import JOINT_NAMES, Vector
-from common.bus.messages import Landmarks, Report
+from common.body.observation import Landmarks
+from common.bus.messages import View
 
 JOINTS: Final = len(JOINT_NAMES)
 _PELVIS, _NECK = (JOINT_NAMES.index(name) for name in ("pelvis", "neck"))
@@ -51,10 +52,10 @@ Row = tuple[float, Vector, Vector, float, float]
 """Of one frame, what a JointTrack has of each."""
 
 
-def track_of(reports: Iterable[Report]) -> JointTrack:
-    """The landmarks of one view's reports; what is cut off, not seen or of a person who lies has
+def track_of(views: Iterable[View]) -> JointTrack:
+    """The landmarks that one viewer reports; what is cut off, not seen or of who lies down has
     confidence 0."""
-    return track_of_rows([row_of(report) for report in reports])
+    return track_of_rows([row_of(view) for view in views])
 
 
 def track_of_rows(rows: Sequence[Row]) -> JointTrack:
@@ -69,17 +70,15 @@ def track_of_rows(rows: Sequence[Row]) -> JointTrack:
     )
 
 
-def row_of(report: Report) -> Row:
-    """What is kept of a report."""
-    seen = report.landmarks
-    if seen is None or report.box is None or not is_upright(seen):
-        return report.captured_s, np.zeros((JOINTS, 2)), np.zeros(JOINTS), 0.0, 0.0
+def row_of(view: View) -> Row:
+    """What is kept of a view."""
+    seen = None if view.person is None else view.person.landmarks
+    if seen is None or not is_upright(seen):
+        return view.captured_s, np.zeros((JOINTS, 2)), np.zeros(JOINTS), 0.0, 0.0
     joints, confidence = np.array(seen.joints_px), np.array(seen.confidence)
-    outside = (joints < 1).any(axis=1) | (joints > (report.width - 1, report.height - 1)).any(
-        axis=1
-    )
+    outside = (joints < 1).any(axis=1) | (joints > (view.width - 1, view.height - 1)).any(axis=1)
     confidence[outside] = 0.0
-    return report.captured_s, joints, confidence, seen.facing_deg, seen.facing_confidence
+    return view.captured_s, joints, confidence, seen.facing_deg, seen.facing_confidence
 
 
 def is_upright(seen: Landmarks) -> bool:

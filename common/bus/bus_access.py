@@ -6,7 +6,7 @@ from common.bus.bus_keys import VIEWERS, Part
 from common.bus.control_messages import Answer, Cameras, ClockQuestion, Command, Ended, Pulse
 from common.bus.inbox import QUESTIONS
 from common.bus.message_codec import TOPICS
-from common.bus.messages import Guide, Message, Picture, Posture, Report
+from common.bus.messages import Guide, Message, Picture, Posture, View
 
 
 class Right(NamedTuple):
@@ -19,7 +19,7 @@ class Right(NamedTuple):
     viewer: int = 0
 
 
-_VIEWER: Final = (Report, Picture, Ended, Pulse, Answer), (ClockQuestion,)
+_VIEWER: Final = (View, Picture, Ended, Pulse, Answer), (ClockQuestion,)
 RIGHTS: Final[dict[Part, Right]] = {
     **{part: Right(f"viewer {n}", *_VIEWER, viewer=n) for n, part in VIEWERS.items()},
     "recognizer": Right("recognizer", (Posture, Pulse), (ClockQuestion,)),

@@ -7,23 +7,20 @@ import msgspec
 
 from common.body.body import ANGLE_NAMES, JOINT_NAMES, LIMBS, POSE_NAMES, Bdp, Elliptic, Round
 from common.body.extremities import EXTREMITY_NAMES
+from common.body.observation import Box, Fit, Landmarks, Measure, Observation, Search
 from common.bus.control_messages import Answer, Cameras, Command, Ended, Pulse
 from common.bus.messages import (
     MOST_VIEWS,
     PROTOCOL,
     Agreement,
     Body,
-    Box,
-    Fit,
     Guide,
-    Landmarks,
     Lifting,
-    Measure,
     Message,
     Performance,
     Picture,
     Posture,
-    Report,
+    View,
 )
 from common.notes.notes import ORIENTATIONS
 from common.rig.camera import Camera, Rig
@@ -48,7 +45,7 @@ class Topic(NamedTuple):
 
 
 TOPICS: Final[dict[type[Message], Topic]] = {
-    Report: Topic("tritrack/{room}/viewer/{viewer}/report", 15.0, newest_only=False),
+    View: Topic("tritrack/{room}/viewer/{viewer}/report", 15.0, newest_only=False),
     Guide: Topic("tritrack/{room}/body/guide", 15.0, newest_only=True),
     Body: Topic("tritrack/{room}/body/pose", 15.0, newest_only=False),
     Posture: Topic("tritrack/{room}/posture", 15.0, newest_only=False),
@@ -65,7 +62,7 @@ Said = TypeVar("Said", bound=Message)
 MOST: Final = 1e9
 """No number of ours is larger: seconds of thirty years, pixels, frames."""
 _CARRIERS: Final = (
-    *(Agreement, Box, Measure, Fit, Landmarks, Lifting, Performance),
+    *(Agreement, Observation, Search, Box, Measure, Fit, Landmarks, Lifting, Performance),
     *(Bdp, Elliptic, Round, Rig, Shift, Camera, Upright),
 )
 """Structs in messages whose numbers are looked at."""
@@ -140,33 +137,44 @@ def _refuse_what_no_process_would_say(message: Message) -> None:
             raise MalformedMessage(f"{name} has {len(value)} entries, not {allowed[-1]}")
         if not _sum_of(value) <= MOST:  # quick; what is not finite makes it so too
             _refuse_a_large_number(name, value)
-    if isinstance(message, Report):
-        _refuse_a_false_report(message)
+    if isinstance(message, View):
+        _refuse_a_false_view(message)
     elif isinstance(message, Body):
         _refuse_a_false_body(message)
     elif isinstance(message, Guide):
         _refuse_a_false_guide(message)
 
 
-def _refuse_a_false_report(report: Report) -> None:
-    if report.width <= 0 or report.height <= 0:
-        raise MalformedMessage(f"a picture of {report.width}x{report.height}")
-    if report.box is not None:
-        _refuse_a_false_box(report.box, report.width, report.height)
-    if report.upright is not None:
-        _refuse_a_false_upright(report.upright, report.width, report.height)
-    due = report.height * ((report.width + 7) // 8)
-    if len(report.silhouette) != due:
-        raise MalformedMessage(f"silhouette has {len(report.silhouette)} bytes, not {due}")
-    if report.measure is not None and min(report.measure.height_px, report.measure.depth_px) <= 0.0:
+def _refuse_a_false_view(view: View) -> None:
+    if view.width <= 0 or view.height <= 0:
+        raise MalformedMessage(f"a picture of {view.width}x{view.height}")
+    if view.upright is not None:
+        _refuse_a_false_upright(view.upright, view.width, view.height)
+    for seen in view.people:
+        if (seen.width, seen.height) != (view.width, view.height):
+            raise MalformedMessage(
+                f"a silhouette of {seen.width}x{seen.height} in a picture of "
+                f"{view.width}x{view.height}"
+            )
+        _refuse_a_false_observation(seen)
+
+
+def _refuse_a_false_observation(seen: Observation) -> None:
+    _refuse_a_false_box(seen.box, seen.width, seen.height)
+    due = seen.height * ((seen.width + 7) // 8)
+    if len(seen.silhouette) != due:
+        raise MalformedMessage(f"silhouette has {len(seen.silhouette)} bytes, not {due}")
+    if seen.measure is not None and min(seen.measure.height_px, seen.measure.depth_px) <= 0.0:
         raise MalformedMessage("a measured body without height or depth")
-    unknown = [name for name in report.angles_deg if name not in ANGLE_NAMES]
+    unknown = [
+        name for name in (seen.search.angles_deg if seen.search else ()) if name not in ANGLE_NAMES
+    ]
     if unknown:
         raise MalformedMessage(f"unknown angle {unknown[0]!r}")
-    if report.fit is not None:
-        _refuse_a_false_fit(report.fit)
-    if report.landmarks is not None:
-        _refuse_false_landmarks(report.landmarks)
+    if seen.stick is not None:
+        _refuse_a_false_fit(seen.stick)
+    if seen.landmarks is not None:
+        _refuse_false_landmarks(seen.landmarks)
 
 
 def _refuse_a_false_upright(upright: Upright, width: int, height: int) -> None:

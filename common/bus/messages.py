@@ -5,6 +5,7 @@ from typing import Annotated, Final, Literal
 import msgspec
 
 from common.body.body import Bdp
+from common.body.observation import Facing, Observation, Pixel
 from common.rig.upright import Shift, Upright
 
 PROTOCOL: Final = 12
@@ -13,15 +14,14 @@ MOST_VIEWS: Final = 8
 """Cameras of a rig."""
 ViewerNumber = Annotated[int, msgspec.Meta(ge=1, le=MOST_VIEWS)]
 """A camera's place in the rig's order, the first is 1: never a place in a pair."""
-Facing = Literal["facade", "flank"]
 Status = Literal["empty", "measuring", "tracking", "predicted", "lost"]
-Views = Literal["both", "1", "2", "none"]
+Views = Annotated[str, msgspec.Meta(pattern=r"^(both|none|[1-8](\+[1-8])*)$")]
+"""Which views show the person: of two cameras "both", of more their numbers, as "1+3"."""
 ScaleSource = Literal["calibrated", "person", "assumed"]
 """Where a rig is from: a file, the person who moves before it, or nowhere."""
 CameraFault = Literal["", "frozen", "black", "saturated", "covered"]
 MOTION_S: Final = 0.5
 """How far back a guide looks for motion, seconds."""
-Pixel = tuple[float, float]
 Point = tuple[float, float, float]
 
 
@@ -41,119 +41,30 @@ class Moment(Message, frozen=True, kw_only=True):
     """The same moment by the room's clock (the integrator host's monotonic clock): for latency."""
 
 
-class Box(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """The boundary of a silhouette, pixels: first and last column, first and last row (P11)."""
-
-    left: int
-    right: int
-    top: int
-    bottom: int
-
-
-class Measure(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What one viewer reads off the opening posture, in its own pixels (section 2.4)."""
-
-    height_px: float
-    """t_n: height of the silhouette."""
-    centre_px: Pixel
-    """Where the centre of the body (x_c, y_c) lies in the picture."""
-    depth_px: float
-    """Half width of the trunk as this view shows it: SR_torso where it sees the flank (P21)."""
-    bdp_px: Bdp | None = None
-    """All BDPs but the trunk's depth, where this view sees the facade."""
-    arms_z_deg: tuple[float, float] | None = None
-    """theta_Z of the right and the left shoulder in the opening posture (P19)."""
-
-
-class Fit(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """The stick body that one viewer fitted to its silhouette (Demir 2006, 3.1.4)."""
-
-    joints_px: tuple[Pixel, ...]
-    """JOINT_NAMES order; r is on the left of the picture (T10)."""
-    ratios: tuple[float, ...]
-    """LIMBS order: how much of its length each segment shows, in [0, 1]."""
-    breadth: float
-    """How much of its breadth the trunk shows, in [0, 1]."""
-    stature_px: float
-    """Height that the body would have standing upright."""
-    hidden: tuple[bool, ...]
-    """LIMBS order: what the silhouette does not show."""
-    score: float
-    """Similarity of silhouette and stick body, in [0, 1]."""
-    matches: int
-
-
-class Landmarks(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Where one view's picture itself shows the joints, whatever source told it."""
-
-    joints_px: tuple[Pixel, ...]
-    """JOINT_NAMES order, pixels of the reported silhouette: its first pixel's centre is (0.5, 0.5).
-    What is not seen stands anywhere, with confidence 0."""
-    confidence: tuple[float, ...]
-    """JOINT_NAMES order, in [0, 1]: how probably each is less than 0.03 statures off (50 mm), where
-    left and right are not exchanged: that is another question, and the facing tells more of it."""
-    facing_deg: float = 0.0
-    """Which way the person faces: 0 towards this camera, 90 to the right of its picture, in
-    (-180, 180]. About the vertical; about the trunk where that leans by more than 30 degrees in the
-    picture: as if the picture were turned until it is upright."""
-    facing_confidence: float = 0.0
-    """How probably that is less than 45 degrees off, in [0, 1]; 0: the source does not tell."""
-    extremities_px: tuple[Pixel, ...] = ()
-    """EXTREMITY_NAMES order, as joints_px; empty: the source does not look for them."""
-    extremities_confidence: tuple[float, ...] = ()
-    """EXTREMITY_NAMES order, as confidence."""
-    second_px: tuple[Pixel, ...] = ()
-    """Where else each joint may be, as joints_px; empty: the source tells one place alone."""
-    second_confidence: tuple[float, ...] = ()
-    """How probably it is there instead, as confidence."""
-
-
-class Report(Moment, frozen=True, kw_only=True):
+class View(Moment, frozen=True, kw_only=True):
     """What one viewer made of one frame."""
 
     viewer: ViewerNumber
     width: int
     height: int
-    silhouette: bytes
-    """`pack(mask)`: the outline and nothing else of the picture."""
-    box: Box | None
-    """None where nobody is seen."""
-    area_px: int = 0
+    """Of the picture that was worked on, pixels."""
+    people: tuple[Observation, ...] = ()
+    """Who is seen; () where no person is."""
     blobs: int = 0
     """How many regions were large enough to be a person (P4)."""
-    cut: bool = False
-    """The silhouette touches the picture's border: the person is partly outside."""
-    upper_body_px: float = 0.0
-    """W_u-body: width of the upper body, the evidence behind `vote` (P25)."""
-    vote: Facing = "facade"
-    """What this view alone takes itself for (P26)."""
-    thresholds_px: tuple[float, float] = (0.0, 0.0)
-    """th_low and th_high that the vote was held against."""
-    measure: Measure | None = None
-    refusal: str = ""
-    """Why the posture is not the opening posture, where it is not."""
-    root_px: Pixel | None = None
-    """Where the search has the navel in the picture; None where nothing was searched for."""
-    angles_deg: dict[str, float] = {}
-    """The angles that this view estimates; names as in ANGLE_NAMES."""
-    squatting: bool = False
-    """The navel is lower than in the opening posture (P33)."""
-    score: float = 0.0
-    """Similarity of silhouette and model in that pose, in [0, 1]."""
-    matches: int = 0
-    """How many times a model was matched for this frame."""
-    fit: Fit | None = None
-    """The stick body, where the guide asked for one."""
-    landmarks: Landmarks | None = None
-    """None where the source of landmarks sees nobody, or there is none."""
     next_s: float | None = None
     """`captured_s` of the next frame at the earliest; None for a camera, which does not know."""
     fault: CameraFault = ""
-    """What is wrong with the picture; nobody is seen in it then."""
+    """What is wrong with the picture; no person is seen in it then."""
     shift: Shift | None = None
     """How the camera was moved since the start; None: it stands as it stood."""
     upright: Upright | None = None
     """How the picture that all pixels here are of comes from the file's; None: it is that."""
+
+    @property
+    def person(self) -> Observation | None:
+        """The person who is followed; None where no person is seen."""
+        return self.people[0] if self.people else None
 
 
 class Guide(Moment, frozen=True, kw_only=True):
@@ -220,6 +131,8 @@ class Body(Moment, frozen=True, kw_only=True):
 
     status: Status
     views: Views
+    person: int = 0
+    """The same number as long as it is the same person."""
     joints_m: tuple[Point, ...] = ()
     """JOINT_NAMES order, world; empty where there is no pose."""
     joints_px: tuple[tuple[Pixel, ...], ...] = ()

@@ -59,7 +59,7 @@ def pack_words(mask: Mask) -> Bits:
 
 
 def words_of_rows(packed: bytes, width: int, height: int) -> Bits:
-    """Rows of whole bytes, the first pixel lowest (`Report.silhouette`), as rows of words."""
+    """Rows of whole bytes, the first pixel lowest (`Observation.silhouette`), as rows of words."""
     rows = np.zeros((height, 8 * ((width + 63) // 64)), np.uint8)
     rows[:, : (width + 7) // 8] = np.frombuffer(packed, np.uint8).reshape(height, -1)
     return rows.view("<u8").astype(np.uint64, copy=False)

@@ -1,30 +1,38 @@
-"""A silhouette as a report carries it: its pixels packed, its box, area and middle."""
+"""A silhouette as a message carries it: its pixels packed, its box, area and middle."""
 
 import cv2
 import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from common.bus.messages import Box, Report, ViewerNumber
+from common.body.observation import Box, Observation
+from common.bus.messages import View, ViewerNumber
 from common.compiled import compiled
 from common.raster.bits import Bits, words_of_rows
 from common.raster.similarity import Mask
 
 
 def pack(mask: Mask) -> bytes:
-    """A mask (H, W) as the bytes of a report: rows of whole bytes, the first pixel lowest."""
+    """A mask (H, W) as the bytes of a message: rows of whole bytes, the first pixel lowest."""
     return np.packbits(mask, axis=1, bitorder="little").tobytes()
 
 
-def unpack(report: Report) -> Mask:
-    """The silhouette of a report, (H, W), True inside the person."""
-    rows = np.frombuffer(report.silhouette, np.uint8).reshape(report.height, -1)
-    return np.unpackbits(rows, axis=1, count=report.width, bitorder="little").astype(np.bool_)
+def unpack(seen: Observation) -> Mask:
+    """The silhouette of a person, (H, W), True inside."""
+    rows = np.frombuffer(seen.silhouette, np.uint8).reshape(seen.height, -1)
+    return np.unpackbits(rows, axis=1, count=seen.width, bitorder="little").astype(np.bool_)
 
 
-def words_of(report: Report) -> Bits:
-    """The same in 64-pixel words, (H, words), as the kernel matches it."""
-    return words_of_rows(report.silhouette, report.width, report.height)
+def mask_of(view: View) -> Mask:
+    """The silhouette of the person in a view, (H, W); empty where no person is seen."""
+    if view.person is None:
+        return np.zeros((view.height, view.width), np.bool_)
+    return unpack(view.person)
+
+
+def words_of(seen: Observation) -> Bits:
+    """The silhouette in 64-pixel words, (H, words), as the kernel matches it."""
+    return words_of_rows(seen.silhouette, seen.width, seen.height)
 
 
 def box_of(mask: Mask | NDArray[np.uint8]) -> Box | None:
@@ -61,10 +69,18 @@ def centroid_px(mask: Mask) -> tuple[float, float]:
     return along / area + 0.5, down / area + 0.5
 
 
-def silhouette_report(
-    viewer: ViewerNumber, mask: Mask, frame: int = 0, at_s: float = 0.0
-) -> Report:
-    """The report of a silhouette of which no more is known.
+def people_of(mask: Mask) -> tuple[Observation, ...]:
+    """The person of a silhouette (H, W) of which no more is known; () where it is empty."""
+    box = box_of(mask)
+    if box is None:
+        return ()
+    height, width = mask.shape
+    nothing = Observation(width=width, height=height, silhouette=b"", box=box, area_px=0)
+    return (with_silhouette(nothing, mask),)
+
+
+def silhouette_view(viewer: ViewerNumber, mask: Mask, frame: int = 0, at_s: float = 0.0) -> View:
+    """What a viewer says of a silhouette of which no more is known.
 
     Args:
         viewer: Who saw it.
@@ -73,26 +89,30 @@ def silhouette_report(
         at_s: When it was taken, by either clock.
     """
     height, width = mask.shape
-    nothing = Report(
+    return View(
         frame=frame,
         captured_s=at_s,
         clock_s=at_s,
         viewer=viewer,
         width=width,
         height=height,
-        silhouette=b"",
-        box=None,
+        people=people_of(mask),
     )
-    return with_silhouette(nothing, mask)
 
 
-def with_silhouette(report: Report, mask: Mask) -> Report:
-    """The report with another silhouette of the same size."""
+def with_silhouette(seen: Observation, mask: Mask) -> Observation:
+    """The person with another silhouette of the same size, which is not empty."""
     box = box_of(mask)
+    assert box is not None
     return msgspec.structs.replace(
-        report,
+        seen,
         silhouette=pack(mask),
         box=box,
         area_px=int(np.count_nonzero(mask)),
         cut=is_cut(box, mask.shape),
     )
+
+
+def with_person(view: View, person: Observation) -> View:
+    """The view with another person in place of the one who is followed."""
+    return msgspec.structs.replace(view, people=(person, *view.people[1:]))

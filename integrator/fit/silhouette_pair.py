@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from common.body.body import Floats, Vector
 from common.body.kinematics import ALL_LIMBS
+from common.body.observation import Observation
 from common.bus.instant import Seen
-from common.bus.messages import Report
 from common.compiled import compiled
 from common.raster.bits import Bits, count
 from common.raster.kernel import draw_limbs, match, match_over, view_of
@@ -29,12 +29,12 @@ class Silhouettes(NamedTuple):
     """Of the pictures, pixels."""
 
 
-def silhouettes_of(rig: Rig, seen: tuple[Report, Report]) -> Silhouettes:
+def silhouettes_of(rig: Rig, seen: tuple[Observation, Observation]) -> Silhouettes:
     """The silhouettes of two reports, and the views of a rig.
 
     Pictures of two sizes are both taken to be as wide and as high as the larger is.
     """
-    each = [words_of(report) for report in seen]
+    each = [words_of(person) for person in seen]
     rows, words = np.max([mask.shape for mask in each], axis=0)
     masks = np.zeros((2, rows, words), np.uint64)
     for whole, mask in zip(masks, each, strict=True):
@@ -43,7 +43,7 @@ def silhouettes_of(rig: Rig, seen: tuple[Report, Report]) -> Silhouettes:
         np.array([view_of(camera) for camera in rig.cameras]),
         masks,
         np.array([count(mask) for mask in masks]),
-        max(report.width for report in seen),
+        max(person.width for person in seen),
     )
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import Vector
-from common.bus.instant import TwoViews
+from common.bus.instant import TwoSeen
 from common.compiled import compiled
 from common.raster.kernel import NEAREST_M, seen_at, view_of
 from common.raster.silhouette_report import unpack, with_silhouette
@@ -34,18 +34,18 @@ CLUTTER_SHARE: Final = 0.03
 
 
 class Cleaned(NamedTuple):
-    """Two reports of one piece, and whether anything else was in them."""
+    """A person as two views see them, in one piece, and whether anything else was in them."""
 
-    seen: TwoViews
+    seen: TwoSeen
     clutter: bool
 
 
-def cleaned(rig: Rig, seen: TwoViews) -> Cleaned:
-    """The reports of an instant without what is no part of the person.
+def cleaned(rig: Rig, seen: TwoSeen) -> Cleaned:
+    """A person as two views see them, without what is no part of them.
 
     Args:
         rig: Two cameras; their world has y up and its floor at 0.
-        seen: The reports with a person, left as it is where one view alone shows somebody.
+        seen: By each view, left as it is where one view alone shows somebody.
     """
     first, second = seen
     if first is None or second is None:

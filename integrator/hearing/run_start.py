@@ -4,7 +4,7 @@ import time
 from typing import Final
 
 from common.bus.control_messages import ClockAnswer, ClockQuestion
-from common.bus.messages import Report, ViewerNumber
+from common.bus.messages import View, ViewerNumber
 
 LEAD_S: Final = 0.5
 """From the last viewer's being ready to the first frame: time for all to hear of it."""
@@ -48,7 +48,7 @@ class Starter:
         """When the run begins; None while that is not fixed."""
         return self._start_s
 
-    def begun(self, report: Report) -> None:
+    def begun(self, report: View) -> None:
         """The run has begun: this process was started again, and its viewers were not."""
         if self._start_s is None:
             self._start_s = report.clock_s - report.captured_s

@@ -8,7 +8,7 @@ from common.bus.bus import Bus
 from common.bus.control_messages import ClockQuestion, Command, Ended
 from common.bus.inbox import Alive
 from common.bus.instant import Instant
-from common.bus.messages import Report, ViewerNumber
+from common.bus.messages import View, ViewerNumber
 from integrator import pairing, presence
 from integrator.hearing import link_lag
 from integrator.hearing.run_start import Starter
@@ -51,7 +51,7 @@ class Subscriber:
         """It was started again, and has yet to wait for what is said once more."""
         self._commands = bus.subscribe(Command)
         self._numbers = {f"viewer {number}": number for number in viewers}
-        self._reports, self._ended = bus.subscribe(Report), bus.subscribe(Ended)
+        self._reports, self._ended = bus.subscribe(View), bus.subscribe(Ended)
         self._alive = bus.watch_alive()
         self._moves: list[Alive | Ended] = []
         """Who came, went and ended, until all is in that they reported before."""
@@ -123,7 +123,7 @@ class Subscriber:
                 log.warning(line)
         return complete
 
-    def _is_caught_up(self, reports: list[Report], now_s: float) -> bool:
+    def _is_caught_up(self, reports: list[View], now_s: float) -> bool:
         """Whether who has said nothing can be held to it: this process has listened itself."""
         if now_s - self._round_s > ASLEEP_S:
             self._judges_s = now_s + AWAKE_S

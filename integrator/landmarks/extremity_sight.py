@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.body.extremities import EXTREMITY_NAMES
+from common.body.observation import Landmarks
 from common.bus.instant import Seen
-from common.bus.messages import Landmarks
 from common.rig.camera import Rig, arrays_of, project, rays
 
 Floats = NDArray[np.float64]
@@ -41,8 +41,8 @@ def seen_extremities(
         stature_m: From sole to crown.
     """
     sure, nearest = np.zeros((len(seen), len(rule_m))), np.zeros((len(seen), len(rule_m), 3))
-    for view, (camera, report) in enumerate(zip(rig.cameras, seen, strict=True)):
-        shown = None if report is None else report.landmarks
+    for view, (camera, person) in enumerate(zip(rig.cameras, seen, strict=True)):
+        shown = None if person is None else person.landmarks
         if shown is not None and shown.extremities_px:
             pixels, sure[view] = _own_sides(shown, project(camera, rule_m))
             nearest[view] = rays(camera, pixels)

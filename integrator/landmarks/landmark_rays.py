@@ -42,7 +42,7 @@ def rays_of(rig: Rig, seen: Seen) -> Rays | None:
         rig: V cameras without distortion.
         seen: Of each view, as without distortion; None where it has nobody.
     """
-    shown = [None if report is None else report.landmarks for report in seen]
+    shown = [None if person is None else person.landmarks for person in seen]
     if all(landmarks is None for landmarks in shown):
         return None
     directions = np.zeros((2, len(shown), len(AT), 3))

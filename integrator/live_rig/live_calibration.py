@@ -3,7 +3,7 @@
 from typing import Final, NamedTuple, Protocol
 
 from calibration.gate.moved_cameras import turned_rig
-from common.bus.instant import Instant, two_views
+from common.bus.instant import Instant, first_two
 from common.config.settings import Settings
 from common.method import METHODS
 from common.video.clip_facts import Clip
@@ -88,11 +88,11 @@ class LiveCalibration:
 
     def heard(self, instant: Instant) -> None:
         """One instant more."""
-        lately = seen_lately.step(self.looking.lately, two_views(instant.detections))
+        lately = seen_lately.step(self.looking.lately, first_two(instant.views))
         at = self.looking = self.looking._replace(now_s=instant.newest.captured_s, lately=lately)
         if not at.looks or at.search.is_over:
             return
-        search, job = rig_search.step(at.search, two_views(instant.views))
+        search, job = rig_search.step(at.search, first_two(instant.views))
         self.looking = at._replace(search=search)
         if job is not None:
             self._solver.ask(job)

@@ -4,7 +4,7 @@ import msgspec
 
 from calibration.gate import moved_cameras, rig_agreement
 from common.body.body import ANGLE_NAMES
-from common.bus.messages import Report, ViewerNumber
+from common.bus.messages import View, ViewerNumber
 from common.rig.camera import Rig
 from common.rig.turned_camera import angle_deg
 from integrator import opening_posture
@@ -49,12 +49,12 @@ def is_same_world(before: Rig, rig: Rig) -> bool:
     )
 
 
-def set_back(report: Report, late_s: float) -> Report:
-    """A report with its times set back where it is view 2's; the room's clock stays as it is."""
-    if report.viewer == 1 or not late_s:
-        return report
-    next_s = None if report.next_s is None else report.next_s - late_s
-    return msgspec.structs.replace(report, captured_s=report.captured_s - late_s, next_s=next_s)
+def set_back(view: View, late_s: float) -> View:
+    """A view with its times set back where it is of camera 2; the room's clock stays as it is."""
+    if view.viewer != 2 or not late_s:
+        return view
+    next_s = None if view.next_s is None else view.next_s - late_s
+    return msgspec.structs.replace(view, captured_s=view.captured_s - late_s, next_s=next_s)
 
 
 def word_of(solved: Solved, late_s: float, moved: tuple[ViewerNumber, ...] = ()) -> str:

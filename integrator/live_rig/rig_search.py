@@ -14,8 +14,9 @@ from calibration.tracks.joint_tracks import (
     row_of,
 )
 from calibration.tracks.lateness import LEAST_LATE
+from common.body.observation import Observation
 from common.bus.instant import Instant, TwoViews
-from common.bus.messages import Report, ViewerNumber
+from common.bus.messages import ViewerNumber
 from common.rig.camera import Rig
 from integrator.live_rig.rig_job import Job, Solved, Stand, Trusted, packed
 
@@ -200,15 +201,16 @@ def _holds(trust: Trusted) -> bool:
 
 
 def _gathered(state: State, views: TwoViews) -> State:
-    """The state with an instant in which somebody moves before both views."""
+    """The state with an instant in which a person moves before both views."""
     first, second = views
-    if first is None or second is None or not _is_sure(first) or not _is_sure(second):
+    if first is None or second is None or not (_is_sure(first.person) and _is_sure(second.person)):
         return _left_out(state, views)
+    assert first.person is not None
     size_px = (first.width, first.height)
     if size_px != (second.width, second.height):
         return state
     state = state._replace(size_px=size_px)
-    now_s, pose = first.captured_s, _pose(first)
+    now_s, pose = first.captured_s, _pose(first.person)
     if state.posed is None or float(np.abs(pose - state.posed[1]).mean()) >= MOVED:
         state = state._replace(posed=(now_s, pose))
     assert state.posed is not None
@@ -218,19 +220,18 @@ def _gathered(state: State, views: TwoViews) -> State:
     return state._replace(moved_s=state.moved_s + state.period_s, gap=False)
 
 
-def _is_sure(report: Report) -> bool:
-    seen = report.landmarks
-    if report.box is None or seen is None or not is_upright(seen):
+def _is_sure(person: Observation | None) -> bool:
+    seen = None if person is None else person.landmarks
+    if seen is None or not is_upright(seen):
         return False
     return float(np.mean(seen.confidence)) >= LEAST_SURE
 
 
-def _pose(report: Report) -> NDArray[np.float64]:
-    """(15, 2) the landmarks about their middle, in heights of the outline."""
-    assert report.landmarks is not None
-    assert report.box is not None
-    joints_px = np.array(report.landmarks.joints_px)
-    return (joints_px - joints_px.mean(axis=0)) / max(report.box.bottom - report.box.top, 1)
+def _pose(person: Observation) -> NDArray[np.float64]:
+    """(15, 2) the landmarks about their middle, in heights of the silhouette."""
+    assert person.landmarks is not None
+    joints_px = np.array(person.landmarks.joints_px)
+    return (joints_px - joints_px.mean(axis=0)) / max(person.box.bottom - person.box.top, 1)
 
 
 def _left_out(state: State, views: TwoViews) -> State:

@@ -4,6 +4,7 @@ from typing import Final, NamedTuple
 
 from calibration.tracks.joint_tracks import LEAST_SURE, row_of
 from common.bus.instant import TwoViews
+from common.bus.messages import View
 from common.rig.camera import Rig
 from integrator.live_rig.rig_job import Stand, packed
 
@@ -20,15 +21,15 @@ class State(NamedTuple):
     """When, and what each view saw."""
 
 
-def step(state: State, seen: TwoViews) -> State:
+def step(state: State, views: TwoViews) -> State:
     """One instant more.
 
     Args:
         state: What was kept.
-        seen: The reports with a person.
+        views: Of the instant.
     """
-    first, second = seen
-    if first is None or second is None or first.landmarks is None or second.landmarks is None:
+    first, second = views
+    if first is None or second is None or not (_shows(first) and _shows(second)):
         return state
     one, other = row_of(first), row_of(second)
     if min(one[2].mean(), other[2].mean()) < LEAST_SURE:
@@ -41,3 +42,7 @@ def stand_before(state: State, rig: Rig, now_s: float) -> Stand:
     """What was seen before a move that is told now, and the rig that was right then."""
     kept = [row for row in state.rows if row[0] < now_s - NOTICED_S]
     return Stand(rig, (b"".join(row[1] for row in kept), b"".join(row[2] for row in kept)))
+
+
+def _shows(view: View) -> bool:
+    return view.person is not None and view.person.landmarks is not None

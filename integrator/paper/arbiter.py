@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from common.bus.messages import Facing
+from common.body.observation import Facing
 
 
 class Sight(NamedTuple):

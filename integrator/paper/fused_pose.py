@@ -1,9 +1,9 @@
 """The pose of the angles that the viewers found: fused, its doubts settled by both silhouettes."""
 
 from common.body.body import POSE_INDEX, YAW_DEG, Vector, rest_pose
+from common.body.observation import Facing
 from common.body.proportions import LOWER_LEG_HEIGHT, UPPER_LEG_HEIGHT, body_vector
-from common.bus.instant import TwoViews
-from common.bus.messages import Facing
+from common.bus.instant import TwoSeen
 from common.rig.camera import Rig
 from integrator.fit.silhouette_pair import silhouettes_of
 from integrator.merge_state import Posed, State
@@ -13,7 +13,7 @@ from integrator.paper.silhouette_vote import settled, votes_of
 from integrator.rig.body_position import place_of, roots_of, scales_at
 
 
-def step(state: State, rig: Rig, seen: TwoViews, settled_at: Vector | None) -> Posed:
+def step(state: State, rig: Rig, seen: TwoSeen, settled_at: Vector | None) -> Posed:
     """The facing and the pose of one instant more.
 
     The arbiter settles the facing (P48), position and angles are fused (P50-P54); beyond the
@@ -22,7 +22,7 @@ def step(state: State, rig: Rig, seen: TwoViews, settled_at: Vector | None) -> P
     Args:
         state: What is remembered.
         rig: Two cameras.
-        seen: What each view reports; None where it has nobody.
+        seen: What each view persons; None where it has nobody.
         settled_at: Where the body was measured, if that has just been settled.
     """
     facing = _faced(state, seen)
@@ -30,7 +30,7 @@ def step(state: State, rig: Rig, seen: TwoViews, settled_at: Vector | None) -> P
     return Posed(_settled(state, rig, seen, pose), facing)
 
 
-def _faced(state: State, seen: TwoViews) -> tuple[Facing, Facing]:
+def _faced(state: State, seen: TwoSeen) -> tuple[Facing, Facing]:
     """Facade and flank, settled between the views' votes (P48); one view alone decides itself.
 
     Beyond the paper, of a body that both views have measured, the one that is left decides
@@ -46,8 +46,8 @@ def _faced(state: State, seen: TwoViews) -> tuple[Facing, Facing]:
         other: Facing = "flank" if own.vote == "facade" else "facade"
         return (own.vote, other) if second is None else (other, own.vote)
     sights = [
-        Sight(before, report.vote, report.upper_body_px, *report.thresholds_px)
-        for before, report in zip(state.facing, (first, second), strict=True)
+        Sight(before, person.vote, person.upper_body_px, *person.thresholds_px)
+        for before, person in zip(state.facing, (first, second), strict=True)
     ]
     ratio = 1.0
     if state.method.scaled_arbiter and state.pose is not None and state.rig is not None:
@@ -60,7 +60,7 @@ def _posed(
     state: State,
     facing: tuple[Facing, Facing],
     rig: Rig,
-    seen: TwoViews,
+    seen: TwoSeen,
     settled_at: Vector | None,
 ) -> Vector:
     """Position and angles of this instant, not yet smoothed (P50-P54)."""
@@ -75,7 +75,7 @@ def _posed(
     return pose
 
 
-def _settled(state: State, rig: Rig, seen: TwoViews, pose: Vector) -> Vector:
+def _settled(state: State, rig: Rig, seen: TwoSeen, pose: Vector) -> Vector:
     """What one view alone cannot tell, by both silhouettes: a departure from the paper (L2, L3)."""
     first, second = seen
     if first is None or second is None:

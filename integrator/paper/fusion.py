@@ -3,7 +3,7 @@
 from typing import Final
 
 from common.body.body import POSE_INDEX, Vector, wrapped_deg
-from common.bus.messages import Report
+from common.body.observation import Observation
 from common.method import Method
 
 LIFT_WITHIN_DEG: Final = 5.0
@@ -33,7 +33,9 @@ def lifted(side: str, hip_z_deg: float, squats: bool) -> bool:
     return abs(inwards_deg) <= LIFT_WITHIN_DEG
 
 
-def fused(before: Vector, facade: Report | None, flank: Report | None, method: Method) -> Vector:
+def fused(
+    before: Vector, facade: Observation | None, flank: Observation | None, method: Method
+) -> Vector:
     """The universal pose from both views' angles.
 
     Arms: theta_X of the shoulders from the flank, the rest from the facade (P51). Legs: theta_Z
@@ -43,8 +45,8 @@ def fused(before: Vector, facade: Report | None, flank: Report | None, method: M
 
     Args:
         before: Pose of the frame before, (25,); its position and trunk are not touched.
-        facade: Report of the view that sees the facade, if it has a body.
-        flank: Report of the view that sees the flank, if it has a body.
+        facade: Of the view that sees the facade, if it has a body.
+        flank: Of the view that sees the flank, if it has a body.
         method: Whether who squats lifts no leg.
     """
     pose = before.copy()
@@ -56,7 +58,7 @@ def fused(before: Vector, facade: Report | None, flank: Report | None, method: M
         hip_x, knee_x = f"{side}_hip_x", f"{side}_knee_x"
         if facade is not None:
             pose = _with_angles(pose, facade, (f"{side}_hip_z",))
-        squats = facade is not None and facade.squatting
+        squats = facade is not None and facade.search is not None and facade.search.squatting
         may_lift = not (squats and method.squat_first)
         if facade is not None and may_lift:
             may_lift = lifted(side, float(pose[POSE_INDEX[f"{side}_hip_z"]]), squats)
@@ -69,10 +71,10 @@ def fused(before: Vector, facade: Report | None, flank: Report | None, method: M
     return pose
 
 
-def _with_angles(pose: Vector, report: Report, names: tuple[str, ...]) -> Vector:
+def _with_angles(pose: Vector, person: Observation, names: tuple[str, ...]) -> Vector:
     """The pose with those of the named angles that a view tells."""
-    found = pose.copy()
+    found, angles_deg = pose.copy(), {} if person.search is None else person.search.angles_deg
     for name in names:
-        if name in report.angles_deg:
-            found[POSE_INDEX[name]] = report.angles_deg[name]
+        if name in angles_deg:
+            found[POSE_INDEX[name]] = angles_deg[name]
     return found

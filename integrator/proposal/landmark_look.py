@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import JOINT_NAMES, OTHER_SIDE, Vector
-from common.bus.messages import Report
+from common.body.observation import Observation
 from common.rig.camera import Camera, Rig, arrays_of, centre, rays
 from integrator.proposal.silhouette_window import (
     FAR_M,
@@ -72,9 +72,9 @@ class Look(NamedTuple):
     """It is told what is in a mirror: right limbs are left ones there."""
 
 
-def shown_of(report: Report | None) -> Shown | None:
-    """What the landmarks of a report say; None where there are none."""
-    found = None if report is None else report.landmarks
+def shown_of(person: Observation | None) -> Shown | None:
+    """What a person's landmarks say; None where there are none."""
+    found = None if person is None else person.landmarks
     if found is None:
         return None
     joints_px, confidence = np.array(found.joints_px), np.array(found.confidence)

@@ -122,14 +122,14 @@ def step(
         up: (3,) where the head is of somebody who leans far or lies, world; None: above.
         lifts: Landmarks are lifted.
     """
-    any_whole = any(report is not None and not report.cut for report in seen)
+    any_whole = any(person is not None and not person.cut for person in seen)
     first, second = (
-        None if report is None or (any_whole and report.cut) else unpack(report) for report in seen
+        None if person is None or (any_whole and person.cut) else unpack(person) for person in seen
     )
     height_m = stature(bdp)
     shown = look((first, second), rig, height_m, since_s, up)
     if shown is None:
-        areas_px = [0 if report is None else report.area_px for report in seen]
+        areas_px = [0 if person is None else person.area_px for person in seen]
         larger = (first, None) if areas_px[0] >= areas_px[1] else (None, second)
         shown = look(larger, rig, height_m, since_s, up)
     assert shown is not None  # one alone stands somewhere
@@ -154,7 +154,7 @@ def _lifted(
     since_s: float,
 ) -> tuple[Floats | None, Lifted | None]:
     """What is lifted from the landmarks of an instant; None where they show no one body."""
-    first, second = (landmark_look.shown_of(report) for report in seen)
+    first, second = (landmark_look.shown_of(person) for person in seen)
     if first is None and second is None:
         return memory, None
     shown = landmark_look.look((first, second), rig, stature_m, since_s)

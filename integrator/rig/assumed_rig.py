@@ -2,30 +2,29 @@
 
 from typing import Final
 
-from common.bus.messages import Report
+from common.body.observation import Observation
 from common.rig.camera import Rig, paper_rig
 
 FOCAL_SHARE: Final = 1.25
 """Focal length over the picture's width: a lens of 44 degrees, common for room cameras."""
 
 
-def assumed_rig(first: Report, second: Report, stature_m: float) -> Rig:
+def assumed_rig(first: Observation, second: Observation, stature_m: float) -> Rig:
     """Cameras at the distance at which a person of a stature is as high as seen now.
 
     Both cameras are level and look at the person, who stands at the origin; the floor is where
     the silhouette ends. Lengths are then right to the share that the stature is wrong.
 
     Args:
-        first: Viewer 1's report of somebody who stands upright, wholly in view.
-        second: Viewer 2's; the same report for both where only one view shows the whole person.
+        first: Who stands upright, wholly in view of viewer 1.
+        second: The same of viewer 2; of the same view where only one shows the whole person.
         stature_m: What is assumed of the person.
     """
     views = []
-    for report in (first, second):
-        assert report.box is not None
-        tall_px = report.box.bottom + 1 - report.box.top
-        size = (report.width, report.height)
-        views.append(_from_a_standing_person(size, report.box.bottom + 1, tall_px, stature_m))
+    for person in (first, second):
+        tall_px = person.box.bottom + 1 - person.box.top
+        size = (person.width, person.height)
+        views.append(_from_a_standing_person(size, person.box.bottom + 1, tall_px, stature_m))
     (focal_1, distance_1, height_1), (focal_2, distance_2, height_2) = views
     return paper_rig(
         (first.width, first.height),

@@ -7,8 +7,8 @@ import numpy as np
 from msgspec import structs
 
 from common.body.body import Vector
-from common.bus.instant import Seen, TwoViews
-from common.bus.messages import Report
+from common.body.observation import Observation
+from common.bus.instant import Seen, TwoSeen
 from common.raster.silhouette_report import centroid_px, unpack
 from common.rig.camera import Camera, Rig, ray
 
@@ -32,7 +32,7 @@ def best_pair(before: Places | None, rig: Rig, seen: Seen) -> Places:
         rig: V cameras without distortion; the only one of a rig is both.
         seen: Of each view, as without distortion; None where it has no person.
     """
-    shown = [n for n, report in enumerate(seen) if report is not None]
+    shown = [n for n, person in enumerate(seen) if person is not None]
     whole = {n for n in shown if not _is_cut(seen[n])}
     if len(rig.cameras) <= 2:
         return 0, len(rig.cameras) - 1
@@ -51,14 +51,14 @@ def best_pair(before: Places | None, rig: Rig, seen: Seen) -> Places:
     return max(worth, key=lambda pair: worth[pair])
 
 
-def _is_cut(report: Report | None) -> bool:
-    return report is None or report.cut
+def _is_cut(person: Observation | None) -> bool:
+    return person is None or person.cut
 
 
-def _sight_line(report: Report | None, camera: Camera) -> Vector:
+def _sight_line(person: Observation | None, camera: Camera) -> Vector:
     """Towards the middle of a silhouette, (3,) unit length, world."""
-    assert report is not None
-    return ray(camera, centroid_px(unpack(report)))
+    assert person is not None
+    return ray(camera, centroid_px(unpack(person)))
 
 
 def _sine(one: Vector, other: Vector) -> float:
@@ -70,7 +70,7 @@ class Two(NamedTuple):
 
     rig: Rig
     """Two cameras; the only one of a rig twice."""
-    seen: TwoViews
+    seen: TwoSeen
 
 
 def two_of(rig: Rig, seen: Seen, pair: Places) -> Two:

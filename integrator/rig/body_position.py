@@ -6,8 +6,8 @@ from typing import Final
 import numpy as np
 
 from common.body.body import POSE_INDEX, Floats, Vector
+from common.body.observation import Facing, Observation, Pixel
 from common.bus.instant import Seen
-from common.bus.messages import Facing, Pixel, Report
 from common.compiled import compiled
 from common.raster.kernel import NEAREST_M
 from common.raster.silhouette_report import unpack
@@ -28,16 +28,15 @@ PARALLEL: Final = 1e-9
 
 def roots_of(seen: Seen) -> Roots:
     """Where each view has the navel, as searched for, or else its silhouette's middle."""
-    first, second = (None if report is None else _root_px(report) for report in seen)
+    first, second = (None if person is None else _root_px(person) for person in seen)
     return first, second
 
 
-def _root_px(report: Report) -> Pixel:
-    if report.root_px is not None:
-        return report.root_px
-    assert report.box is not None
-    columns = np.flatnonzero(unpack(report).ravel()) % report.width
-    return float(columns.mean()) + 0.5, (report.box.top + report.box.bottom + 1) / 2
+def _root_px(person: Observation) -> Pixel:
+    if person.search is not None:
+        return person.search.root_px
+    columns = np.flatnonzero(unpack(person).ravel()) % person.width
+    return float(columns.mean()) + 0.5, (person.box.top + person.box.bottom + 1) / 2
 
 
 def place_of(rig: Rig, roots_px: Roots, before_m: Vector, facade: int) -> Vector:

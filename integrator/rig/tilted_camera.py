@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import Vector
-from common.bus.messages import Report
+from common.body.observation import Observation
 from common.rig.camera import Camera, Rig, as_matrix, as_row
 from integrator.rig.assumed_rig import FOCAL_SHARE
 
@@ -43,16 +43,15 @@ LOWEST_M: Final = 1e-3
 """Instead of a height of a camera under the floor."""
 
 
-def assumed_rig_of_one(report: Report, stature_m: float) -> Rig:
+def assumed_rig_of_one(person: Observation, stature_m: float) -> Rig:
     """The rig of a run of one view, by its first sight of somebody upright, wholly in view.
 
     Args:
-        report: Of that sight.
+        person: Of that sight.
         stature_m: What is assumed of the person.
     """
-    assert report.box is not None
-    size = (report.width, report.height)
-    sight = np.array([[report.box.top, report.box.bottom + 1.0]])
+    size = (person.width, person.height)
+    sight = np.array([[person.box.top, person.box.bottom + 1.0]])
     camera = camera_of_sights(size, sight, stature_m)
     return Rig(*size, (camera, camera))
 

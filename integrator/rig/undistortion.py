@@ -8,9 +8,10 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from common.body.observation import Landmarks, Observation, Pixel, Search
 from common.bus.instant import Instant
-from common.bus.messages import Landmarks, Pixel, Report
-from common.raster.silhouette_report import box_of, is_cut, pack, unpack
+from common.bus.messages import View
+from common.raster.silhouette_report import box_of, is_cut, pack, unpack, with_person
 from common.raster.similarity import Mask
 from common.rig.camera import Camera, Rig
 
@@ -29,42 +30,53 @@ def undistorted_camera(camera: Camera) -> Camera:
 
 
 def undistorted_instant(rig: Rig | None, instant: Instant) -> Instant:
-    """The reports of an instant as such cameras would give rise to; as they are of unknown ones."""
+    """The views of an instant as such cameras would give rise to; as they are of unknown ones."""
     if rig is None:
         return instant
     views = tuple(
-        None if report is None else undistorted_report(report, camera)
-        for report, camera in zip(instant.views, rig.cameras, strict=True)
+        None if view is None else undistorted_view(view, camera)
+        for view, camera in zip(instant.views, rig.cameras, strict=True)
     )
     return Instant(views)
 
 
-def undistorted_report(report: Report, camera: Camera) -> Report:
-    """A report with silhouette, box, area, navel and landmarks as without distortion.
+def undistorted_view(view: View, camera: Camera) -> View:
+    """A view with its person as without distortion."""
+    if view.person is None or not any(camera.distortion):
+        return view
+    return with_person(view, undistorted_observation(view.person, camera))
 
-    What the lens shows beyond the border of that picture is cut off; somebody of whom nothing
+
+def undistorted_observation(seen: Observation, camera: Camera) -> Observation:
+    """A person with silhouette, box, area, navel and landmarks as without distortion.
+
+    What the lens shows beyond the border of that picture is cut off; a person of whom nothing
     would be left stays as they are, as does everything where nothing is bent.
     """
-    if report.box is None or not any(camera.distortion):
-        return report
-    mask = undistorted(unpack(report), camera)
+    if not any(camera.distortion):
+        return seen
+    mask = undistorted(unpack(seen), camera)
     box = box_of(mask)
     if box is None:
-        return report
+        return seen
     return msgspec.structs.replace(
-        report,
+        seen,
         silhouette=pack(mask),
         box=box,
         area_px=int(mask.sum()),
-        cut=report.cut or is_cut(box, mask.shape),
-        root_px=_undistorted_px(report.root_px, camera),
-        landmarks=_undistorted_landmarks(report.landmarks, camera),
+        cut=seen.cut or is_cut(box, mask.shape),
+        search=_undistorted_search(seen.search, camera),
+        landmarks=_undistorted_landmarks(seen.landmarks, camera),
     )
 
 
-def _undistorted_px(place: Pixel | None, camera: Camera) -> Pixel | None:
-    if place is None:
+def _undistorted_search(search: Search | None, camera: Camera) -> Search | None:
+    if search is None:
         return None
+    return msgspec.structs.replace(search, root_px=_undistorted_px(search.root_px, camera))
+
+
+def _undistorted_px(place: Pixel, camera: Camera) -> Pixel:
     K = np.array(camera.K)
     u, v = cv2.undistortPoints(np.array([[place]]), K, np.array(camera.distortion), P=K)[0, 0]
     return float(u), float(v)

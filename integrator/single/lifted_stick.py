@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 
 from common.body.body import JOINT_NAMES, LIMB_ENDS, Vector
 from common.body.kinematics import HEAD
-from common.bus.messages import Fit, Lifting
+from common.body.observation import Fit
+from common.bus.messages import Lifting
 from common.rig.camera import centre
 from integrator.single import depth_signs
 from integrator.single.lifting import Lifted, StickPicture, lift
@@ -22,13 +23,13 @@ TILTED_DEG: Final = 15.0
 
 
 def step(memory: depth_signs.Memory, sight: Sight) -> tuple[depth_signs.Memory, Hypothesis]:
-    """The stick body of a report in the world, its signs and orientation chosen or annotated.
+    """The stick body of a view in the world, its signs and orientation chosen or annotated.
 
     Args:
         memory: Of the frame before.
-        sight: Its report has a fit.
+        sight: Its person has a stick body.
     """
-    fit, annotations = sight.report.fit, sight.annotations
+    fit, annotations = sight.person.stick, sight.annotations
     assert fit is not None
     lengths_m = sight.man.lengths * sight.stature_m
     px_per_m = fit.stature_px / sight.stature_m

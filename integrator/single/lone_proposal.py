@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import JOINT_NAMES, LIMB_ENDS, Vector
+from common.body.observation import Observation
 from common.body.stick_body import SHOULDERS_BELOW
-from common.bus.messages import Lifting, Report
+from common.bus.messages import Lifting
 from common.rig.camera import Camera, centre, ray
 from integrator.landmarks import landmark_fusion
 from integrator.landmarks.landmark_rays import rays_of
@@ -72,7 +73,7 @@ def step(before: Before, sight: Sight) -> Proposed:
     joints_m = _with_trunk(sight, known.joints_m)
     if sight.method.reflection and front is not None and up is None:
         yaw = reflection.yaw_deg(camera, joints_m)
-        shown, named = _shown(sight.report), annotations.orientation
+        shown, named = _shown(sight.person), annotations.orientation
         front, behind = reflection.front_of(front, yaw, shown, named, sight.dt_s)
         joints_m = reflection.seen_from_behind(camera, joints_m) if behind else joints_m
         joints_m = joints_m if named else reflection.as_shown(camera, joints_m, shown)
@@ -97,10 +98,10 @@ def step(before: Before, sight: Sight) -> Proposed:
     return Proposed(found, agrees, known.memory, front, landmarks, depth)
 
 
-def _shown(report: Report) -> tuple[float, float] | None:
+def _shown(person: Observation) -> tuple[float, float] | None:
     """Which way landmarks have a whole person face, and how surely; None where they do not."""
-    shown = report.landmarks
-    return None if shown is None or report.cut else (shown.facing_deg, shown.facing_confidence)
+    shown = person.landmarks
+    return None if shown is None or person.cut else (shown.facing_deg, shown.facing_confidence)
 
 
 def _with_landmarks(

@@ -7,9 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import JOINT_NAMES, Bdp, Vector, rest_pose
+from common.body.observation import Observation
 from common.body.proportions import body_vector, stature
 from common.body.stick_body import Stickman
-from common.bus.messages import Lifting, Report
+from common.bus.instant import TwoSeen
+from common.bus.messages import Lifting, ViewerNumber
 from common.method import Method
 from common.notes.notes import Orientation
 from common.rig.camera import Camera, Rig
@@ -30,14 +32,14 @@ class Annotations(NamedTuple):
 
 
 class Sight(NamedTuple):
-    """One report, and what it is held against."""
+    """A person as one camera sees them, and what that is held against."""
 
     method: Method
     place: int
     """0 or 1: of its camera in the rig."""
     rig: Rig
     """Two cameras, at the working size: the other one tells the network its axes."""
-    report: Report
+    person: Observation
     """As without distortion, but its stick body, which is as the picture has it."""
     man: Stickman
     """Proportions of the stick body."""
@@ -46,6 +48,8 @@ class Sight(NamedTuple):
     """(25,) pose of the frame before; None at the first."""
     dt_s: float
     annotations: Annotations
+    number: ViewerNumber = 1
+    """Of its camera in the run's rig."""
 
     @property
     def camera(self) -> Camera:
@@ -53,11 +57,11 @@ class Sight(NamedTuple):
         return self.rig.cameras[self.place]
 
     @property
-    def seen(self) -> tuple[Report | None, Report | None]:
-        """The report in the place of its camera; the only camera of a rig is its first, which
+    def seen(self) -> TwoSeen:
+        """The person in the place of their camera; the only camera of a rig is its first, which
         proposals look at from the front."""
         first, second = self.rig.cameras
-        return (self.report, None) if self.place == 0 or first == second else (None, self.report)
+        return (self.person, None) if self.place == 0 or first == second else (None, self.person)
 
     @property
     def stature_m(self) -> float:

@@ -58,13 +58,13 @@ def begun(sight: Sight, joints_m: NDArray[np.float64] | None, other: Alone | Non
     """
     nothing, signs = Lifting("", 1.0, ()), depth_signs.init()
     if joints_m is None:
-        return Alone(sight.report.viewer, 0.0, nothing, Front(), signs, None, stick=False)
+        return Alone(sight.number, 0.0, nothing, Front(), signs, None, stick=False)
     signs, front, landmarks = _witnessed(sight, signs, joints_m), None, None
     if other is not None:
         landmarks = other.landmarks
         yaw = reflection.yaw_deg(sight.camera, joints_m)
         front = None if other.front is None else reflection.as_known(other.front, yaw)
-    return Alone(sight.report.viewer, 0.0, nothing, front, signs, landmarks, stick=False)
+    return Alone(sight.number, 0.0, nothing, front, signs, landmarks, stick=False)
 
 
 def step(memory: Memory | None, alone: Alone, sight: Sight) -> Found:
@@ -84,7 +84,7 @@ def step(memory: Memory | None, alone: Alone, sight: Sight) -> Found:
     alone = alone._replace(
         front=seen.front, landmarks=seen.landmarks, depth=seen.depth, stick=not suffices
     )
-    if suffices or sight.report.fit is None:
+    if suffices or sight.person.stick is None:
         signs = _witnessed(sight, alone.signs, body.joints_m, body.lifting.orientation_confidence)
         return _found(body, seen.memory, alone._replace(signs=signs))
     signs, lifted = lifted_stick.step(alone.signs, sight)
@@ -100,7 +100,7 @@ def _found(body: Hypothesis, memory: Memory | None, alone: Alone) -> Found:
 
 def _off_px(sight: Sight, body: Hypothesis) -> float:
     """How far a body is from what is shown, its surest joints most; 0 where nothing is."""
-    found = sight.report.landmarks
+    found = sight.person.landmarks
     if found is None:
         return 0.0
     sure = np.array(found.confidence)

@@ -51,10 +51,10 @@ def stick_similarity(sight: Sight, joints_m: NDArray[np.float64]) -> float:
         sight: Of one view.
         joints_m: (15, 3) world; they need not be where a pose's cylinders have them.
     """
-    camera, man, report = undistorted_camera(sight.camera), sight.man, sight.report
+    camera, man, person = undistorted_camera(sight.camera), sight.man, sight.person
     tall_px = _tall_px(camera, sight.stature_m, joints_m)
-    seen, broad_px = words_of(report), 2 * man.lengths[HALF_SHOULDERS] * tall_px
-    task = Task(view_of(camera), man.parts, man.depth, broad_px, seen, count(seen), report.width)
+    seen, broad_px = words_of(person), 2 * man.lengths[HALF_SHOULDERS] * tall_px
+    task = Task(view_of(camera), man.parts, man.depth, broad_px, seen, count(seen), person.width)
     stick = np.ones(POSE_SIZE)
     stick[STATURE] = tall_px
     best = 0.0

@@ -8,7 +8,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from common.bus.messages import Landmarks
+from common.body.observation import Landmarks
 from common.config.part_settings import CameraSettings
 from common.config.settings import Settings
 from common.method import DEFAULT
@@ -89,10 +89,10 @@ def _examples(film: Path, teacher: str, tell: Tell) -> Iterator[PictureExample]:
         every = max(1, math.ceil(view.frames / MOST))
         with outside_sources(settings, clip.views) as sources:
             for frame in recorded(view, every, decoder, sources[1]):
-                state, report, mask = track.look(state, frame, None)
+                state, seen, mask = track.look(state, frame, None)
                 tell(frame.index / max(view.frames, 1))
-                if report.landmarks is not None:
-                    yield from example_of(frame.picture, mask, report.landmarks, rng)
+                if state.landmarks is not None and not seen.fault:
+                    yield from example_of(frame.picture, mask, state.landmarks, rng)
 
 
 def example_of(

@@ -8,7 +8,7 @@ import numpy as np
 
 from animator.page.inset import Image, draw_contours, inset, limb_contours, limb_ends
 from animator.scene import figure
-from common.bus.messages import Body, Picture, Report, ViewerNumber
+from common.bus.messages import Body, Picture, View, ViewerNumber
 from common.config import config_file
 from common.method import Mode
 from common.rig.camera import Rig
@@ -27,7 +27,7 @@ WIDTH_PX: Final = 160
 LEVELS: Final = 0xF0
 """Bits of a colour that are kept: a page of strips with their noise would weigh 12 MB."""
 
-Instant = tuple[dict[ViewerNumber, CapturedFrame], dict[int, Report], Body]
+Instant = tuple[dict[ViewerNumber, CapturedFrame], dict[int, View], Body]
 """What went through the tracker at one time."""
 
 

@@ -10,7 +10,7 @@ from typing import Any, Final, NamedTuple
 from common.bus.bus import Bus, BusError, open_client, unanswered
 from common.bus.control_messages import Cameras, Pulse
 from common.bus.inbox import Inbox
-from common.bus.messages import Body, Message, Posture, Report
+from common.bus.messages import Body, Message, Posture, View
 from common.bus.process import READY_S
 from common.config.settings import Settings
 from runtime.live.page_desk import PageDesk
@@ -147,7 +147,7 @@ class Subscriber:
         heard.cameras.extend([] if told is None else [told])
         if heard.journal is not None:
             heard.journal.keep(heard.cameras)
-        self._reports = [bus.subscribe(Report)] if heard.keep is not None else []
+        self._reports = [bus.subscribe(View)] if heard.keep is not None else []
 
     @property
     def dropped(self) -> int:

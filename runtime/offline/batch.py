@@ -7,7 +7,7 @@ from typing import Final, NamedTuple
 import msgspec
 from rich.console import Console
 
-from common.bus.messages import Body, Report, ScaleSource, ViewerNumber
+from common.bus.messages import Body, ScaleSource, View, ViewerNumber
 from common.config import config_file
 from common.config.part_settings import SettingsError
 from common.config.settings import Settings
@@ -158,7 +158,7 @@ def head_of(
 def _recorder(heard: Kept) -> Watch:
     """Gathers what is said of every instant, in the order in which it is said."""
 
-    def each(_frames: object, reports: dict[int, Report], body: Body) -> None:
+    def each(_frames: object, reports: dict[int, View], body: Body) -> None:
         for message in (*reports.values(), body):
             heard.append(message)
 

@@ -14,13 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calibration.tracks.joint_tracks import is_upright
+from common.body.observation import Observation
 from common.body.proportions import thesis_bdp
 from common.bus.instant import Instant
-from common.bus.messages import Body, Guide, Report, ScaleSource, ViewerNumber
+from common.bus.messages import Body, Guide, ScaleSource, View, ViewerNumber
 from common.config.settings import Settings
 from common.method import Method
 from common.notes.notes import Notes, held
-from common.raster.silhouette_report import unpack
+from common.raster.silhouette_report import mask_of, unpack
 from common.rig.camera import Camera, Rig
 from common.rig.upright_camera import as_worked_on
 from common.video.clip_facts import Clip
@@ -117,7 +118,7 @@ def silhouettes_of(
     reader: Reader,
     source: OutsideSource | None = None,
     course: Course = Course(),
-) -> Sequence[Report]:
+) -> Sequence[View]:
     """The first pass: the silhouette and the landmarks of every frame, from where it was left.
 
     Raises:
@@ -141,7 +142,7 @@ def silhouettes_of(
 
 
 def bodies_of(
-    reports: Sequence[Report],
+    reports: Sequence[View],
     film: FilmFacts,
     course: Course = Course(),
     first: FirstPass = FirstPass(),
@@ -174,22 +175,22 @@ def bodies_of(
     return Lifted(bodies, rig.cameras[0])
 
 
-def _posed(at: Posing, report: Report, film: FilmFacts) -> tuple[Posing, Body]:
+def _posed(at: Posing, report: View, film: FilmFacts) -> tuple[Posing, Body]:
     """One frame of the second pass."""
     annotations, guide = _annotations(film, report), at.guide
     if guide is not None and annotations.orientation is not None:
         guide = msgspec.structs.replace(guide, stick=True)
-    viewer, full = track.describe(at.viewer, report, unpack(report), guide)
+    viewer, full = track.describe(at.viewer, report, mask_of(report), guide)
     instant = Instant((full, None)) if film.number == 1 else Instant((None, full))
     state, body, guide = merge.step(at.integrator, instant, annotations)
     return at._replace(viewer=viewer, integrator=state, guide=guide), body
 
 
-def _begun(reports: Sequence[Report], film: FilmFacts) -> tuple[track.State, State]:
+def _begun(reports: Sequence[View], film: FilmFacts) -> tuple[track.State, State]:
     """A viewer and an integrator that know what the first pass tells of the scale (T20)."""
     settings, camera = film.settings, film.camera
     size = (reports[0].width, reports[0].height)
-    stands = [_stand_of(report) for report in reports if report.box is not None]
+    stands = [_stand_of(report.person) for report in reports if report.person is not None]
     standing = standing_of([one.rows for one in stands], [one.whole for one in stands])
     nothing = np.zeros((size[1], size[0], 3), np.uint8)
     viewer = track.init(_setup(film), learn([nothing]), standing=standing)
@@ -206,11 +207,11 @@ def _begun(reports: Sequence[Report], film: FilmFacts) -> tuple[track.State, Sta
     return viewer, state
 
 
-def _stand_of(report: Report) -> Stand:
+def _stand_of(person: Observation) -> Stand:
     """A film's reports are many: each is let go of again."""
-    shown = report.landmarks
+    shown = person.landmarks
     upright = shown is not None and is_upright(shown)
-    return Stand(standing_rows(unpack(report)), not report.cut, upright)
+    return Stand(standing_rows(unpack(person)), not person.cut, upright)
 
 
 def _sights(stands: Sequence[Stand], size: tuple[int, int]) -> NDArray[np.float64]:
@@ -225,7 +226,7 @@ def _setup(film: FilmFacts) -> track.Setup:
     return track.Setup(film.number, film.camera, film.settings, film.method, alone=True)
 
 
-def _annotations(film: FilmFacts, report: Report) -> Annotations:
+def _annotations(film: FilmFacts, report: View) -> Annotations:
     """What the user says of a frame, in the pixels of its report."""
     note = held(film.notes, report.frame)
     filed = film.scale * np.array([*note.joints_px.values()]).reshape(-1, 2)
@@ -234,8 +235,9 @@ def _annotations(film: FilmFacts, report: Report) -> Annotations:
     return Annotations(note.orientation, note.depth, placed)
 
 
-def _refuse_a_moving_camera(reports: Sequence[Report], source: str) -> None:
-    areas = [report.area_px / (report.width * report.height) for report in reports if report.box]
+def _refuse_a_moving_camera(reports: Sequence[View], source: str) -> None:
+    people = [report.person for report in reports if report.person is not None]
+    areas = [person.area_px / (person.width * person.height) for person in people]
     if areas and np.median(areas) > MOST_COVERED:
         raise ClipError(
             f"{source}: most of the picture changes, so its camera moves or its light does: only "

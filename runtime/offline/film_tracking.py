@@ -8,12 +8,11 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from common.bus.messages import Body, Report
+from common.bus.messages import Body, View
 from common.config.settings import Settings
 from common.method import METHODS, Method
 from common.notes.notes import Notes
 from common.npz_file import Facts
-from common.raster.silhouette_report import with_silhouette
 from common.rig.camera import PAPER_ROTATIONS, Camera
 from common.video.clip_facts import Clip, clip_summary, shortfall, unread_facts
 from common.video.pictures import Reader
@@ -45,7 +44,7 @@ class Followed(NamedTuple):
     """What one camera gave."""
 
     bodies: Sequence[Body]
-    reports: Sequence[Report]
+    reports: Sequence[View]
     period_s: float
     """From a frame to the next, where the rate does not vary."""
     camera: Camera | None
@@ -136,7 +135,7 @@ def _camera_facts(assumed: Camera | None) -> Facts:
 
 def _looked_through(
     film: Film, known: FilmFacts, reader: Reader, heard: Heard
-) -> tuple[Sequence[Report], FirstPass]:
+) -> tuple[Sequence[View], FirstPass]:
     """The first pass, and what it tells of itself."""
     clip, work, began = film.clip, heard.work, time.perf_counter()
     view, begun = clip.views[0], work.resumed(CUTTING, Cutting)
@@ -149,7 +148,7 @@ def _looked_through(
 
 
 def follow_masks(
-    name: str, reports: list[Report], settings: Settings, tell: Tell = lambda _: None
+    name: str, reports: list[View], settings: Settings, tell: Tell = lambda _: None
 ) -> Followed:
     """The same for silhouettes that were cut out before."""
     began, least_share = time.perf_counter(), settings.silhouette.min_height_share
@@ -167,13 +166,12 @@ def follow_masks(
     return Followed(bodies, reports, period_s, camera, None, None, facts)
 
 
-def _or_nobody(report: Report, least_share: float) -> Report:
-    """A report, or one of nobody where its silhouette is lower than a person is."""
-    box = report.box
-    if box is None or box.bottom + 1 - box.top >= least_share * report.height:
+def _or_nobody(report: View, least_share: float) -> View:
+    """A report, or one of no person where its silhouette is lower than a person is."""
+    person = report.person
+    if person is None or person.box.bottom + 1 - person.box.top >= least_share * report.height:
         return report
-    nobody = np.zeros((report.height, report.width), np.bool_)
-    return with_silhouette(report, nobody)
+    return msgspec.structs.replace(report, people=())
 
 
 def _times(frames: int, **spent_s: float) -> Facts:

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from typing import Final, NamedTuple
 
 from common.bus.instant import instant_of
-from common.bus.messages import Body, Guide, Report, ViewerNumber
+from common.bus.messages import Body, Guide, View, ViewerNumber
 from common.video.clip_facts import Clip
 from common.video.frame_cache import Reel
 from integrator import diagnostics, merge_state
@@ -28,7 +28,7 @@ TURNS_S: Final = 0.0002
 """How long a thread that has computed waits for its turn to be interpreted: by Python's own 5 ms
 two viewers side by side would be no faster than one after the other."""
 
-Each = Callable[[dict[ViewerNumber, CapturedFrame], dict[int, Report], Body], object]
+Each = Callable[[dict[ViewerNumber, CapturedFrame], dict[int, View], Body], object]
 """Looks at the frames of an instant, the reports on them and the body they gave."""
 
 
@@ -146,7 +146,7 @@ def _stepped(
     frames: dict[ViewerNumber, CapturedFrame],
     calibration: LiveCalibration,
     pool: Executor,
-) -> tuple[LockstepState, dict[int, Report], Body]:
+) -> tuple[LockstepState, dict[int, View], Body]:
     """One instant more."""
     start = time.perf_counter()
     viewers, reports = looked(going.viewers, frames, going.guide, pool.map)

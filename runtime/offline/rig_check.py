@@ -7,7 +7,7 @@ import msgspec
 
 from calibration.tracks.joint_tracks import Row, Sighting, row_of, track_of_rows
 from calibration.tracks.lateness import UNSEEN, Clock, clock_of
-from common.bus.messages import Body, Report, ViewerNumber
+from common.bus.messages import Body, View, ViewerNumber
 from common.npz_file import Facts
 from common.video.clip_facts import Clip
 from viewer.captured_frame import CapturedFrame
@@ -37,7 +37,7 @@ class Witness:
         self.seen = Seen({})
 
     def __call__(
-        self, _: dict[ViewerNumber, CapturedFrame], reports: dict[int, Report], body: Body
+        self, _: dict[ViewerNumber, CapturedFrame], reports: dict[int, View], body: Body
     ) -> None:
         """One instant more; the given rig is not held against what is seen after a move."""
         self.seen = self.seen._replace(moved=self.seen.moved or bool(body.moved))

@@ -8,7 +8,7 @@ import msgspec
 from calibration.person.rig_quality import PersonCalibration
 from calibration.tracks.joint_tracks import Sighting, track_of
 from calibration.tracks.lateness import LEAST_LATE, Clock, clock_of
-from common.bus.messages import Report, ViewerNumber
+from common.bus.messages import View, ViewerNumber
 from common.config.settings import Settings
 from common.method import Method
 from common.npz_file import Facts
@@ -58,7 +58,7 @@ def sighting_of(
         )
         for view, opening in zip(clip.views, learnt, strict=True)
     }
-    reports: dict[ViewerNumber, list[Report]] = {view.number: [] for view in clip.views}
+    reports: dict[ViewerNumber, list[View]] = {view.number: [] for view in clip.views}
     for n, frames in enumerate(instants(clip, readers, sources)):
         for number, frame in frames.items():
             viewers[number], report, _ = track.look(viewers[number], frame, None)

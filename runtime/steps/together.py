@@ -4,8 +4,9 @@ from collections.abc import Callable, Iterable, Mapping
 from itertools import repeat
 from typing import Any
 
+from common.body.observation import Landmarks
 from common.bus.instant import instant_of
-from common.bus.messages import Body, Guide, Landmarks, Report, ViewerNumber
+from common.bus.messages import Body, Guide, View, ViewerNumber
 from common.config.settings import Settings
 from common.method import Method
 from common.video.clip_facts import Clip, ClipView, whole_rig
@@ -16,7 +17,7 @@ from viewer.background.background import Background
 from viewer.captured_frame import CapturedFrame
 
 Viewers = Mapping[ViewerNumber, track.State]
-Reports = Mapping[int, Report]
+Reports = Mapping[int, View]
 Each = Callable[..., Iterable[Any]]
 """`map`, or one that works side by side."""
 
@@ -50,7 +51,7 @@ def looked(
     frames: Mapping[ViewerNumber, CapturedFrame],
     guide: Guide | None,
     each: Each = map,
-) -> tuple[dict[ViewerNumber, track.State], dict[int, Report]]:
+) -> tuple[dict[ViewerNumber, track.State], dict[int, View]]:
     """What each viewer remembers after its frame, and its report.
 
     Args:

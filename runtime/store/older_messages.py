@@ -5,13 +5,21 @@ from typing import Any, Final, TypeVar
 import msgspec
 
 from common.bus.message_codec import MalformedMessage, decode
-from common.bus.messages import PROTOCOL, Body, Message
+from common.bus.messages import PROTOCOL, Body, Message, View
 from common.config.renamed_settings import in_new_words
 
-OLDER: Final = 11
-"""The protocol of 0.2."""
+OLDER: Final = (10, 11)
+"""Protocols of 0.2 and its last development versions."""
 SEEN_BY: Final = {"both": (True, True), "1": (True, False), "2": (False, True)}
 """What 0.2 told of two cameras in one word."""
+
+OF_THE_PERSON: Final = (
+    *("silhouette", "box", "area_px", "cut", "landmarks", "vote", "upper_body_px"),
+    *("thresholds_px", "measure", "refusal", "fit"),
+)
+"""Fields of a Report that an Observation has."""
+OF_THE_SEARCH: Final = ("root_px", "angles_deg", "squatting", "score", "matches")
+"""Those that a Search has."""
 
 Kind = TypeVar("Kind", bound=Message)
 Head = TypeVar("Head")
@@ -55,9 +63,36 @@ def _in_this_form(payload: bytes, kind: type[Message]) -> bytes | None:
         told = msgspec.msgpack.decode(payload)
     except msgspec.DecodeError:
         return None
-    if not isinstance(told, dict) or told.get("protocol") != OLDER:
+    if not isinstance(told, dict) or told.get("protocol") not in OLDER:
         return None
     told["protocol"] = PROTOCOL
     if kind is Body:
-        told["seen"] = seen_by(str(told.get("views")))
+        told = _body_of(told)
+    if kind is View:
+        told = _view_of(told)
     return msgspec.msgpack.encode(told)
+
+
+def _body_of(body: dict[str, Any]) -> dict[str, Any]:
+    """A Body, which did not say view by view who shows the person."""
+    agreement = body.get("agreement")
+    if isinstance(agreement, dict):  # the first of protocol 10 did not know how motions agree
+        agreement = {"motion_mm": 0.0, **agreement}
+    return {**body, "seen": seen_by(str(body.get("views"))), "agreement": agreement}
+
+
+def _view_of(report: dict[str, Any]) -> dict[str, Any]:
+    """A Report, which had one person at most, and all of them in its own fields."""
+    view = {name: value for name, value in report.items() if name not in OF_THE_PERSON}
+    view = {name: value for name, value in view.items() if name not in OF_THE_SEARCH}
+    return {**view, "people": [_person_of(report)] if report.get("box") else []}
+
+
+def _person_of(report: dict[str, Any]) -> dict[str, Any]:
+    """Its person; what the viewer searched for stands together now, and `fit` is `stick`."""
+    own = {*OF_THE_PERSON, "width", "height"} & report.keys()
+    person = {name: report[name] for name in own} | {"stick": report.get("fit")}
+    person.pop("fit", None)
+    if report.get("root_px") is not None:
+        person["search"] = {name: report.get(name) for name in OF_THE_SEARCH}
+    return person

@@ -109,7 +109,7 @@ def _arrays(bodies: Sequence[Body], told: _Told) -> Arrays:
     in_pose = list(ANGLES_IN_POSE)
     return {
         "frame": np.array([body.frame for body in bodies], np.int64),
-        "person": np.zeros(n, np.int64),
+        "person": np.array([body.person for body in bodies], np.int64),
         "time_s": np.array([body.captured_s for body in bodies], np.float64),
         "joints_m": rows((body.joints_m for body in bodies), (len(JOINT_NAMES), 3)),
         "joint_names": np.array(JOINT_NAMES),

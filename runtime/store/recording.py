@@ -24,8 +24,8 @@ from common.bus.messages import (
     Message,
     Moment,
     Posture,
-    Report,
     ScaleSource,
+    View,
 )
 from common.config.settings import Settings
 from common.rig.camera import Rig
@@ -40,7 +40,7 @@ TORN: Final = ".recording.*.mcap"
 CHUNK_BYTES: Final = 1 << 17
 """So much is written at once, half a second to two of a run: more is not lost when it is killed."""
 KINDS: Final[dict[str, type[Message]]] = {
-    **{f"/report/{number}": Report for number in range(1, MOST_VIEWS + 1)},
+    **{f"/report/{number}": View for number in range(1, MOST_VIEWS + 1)},
     "/body": Body,
     "/posture": Posture,
     "/cameras": Cameras,
@@ -82,7 +82,7 @@ class Recording(NamedTuple):
     """What a recording holds, each in the order in which it was said."""
 
     head: Head
-    reports: tuple[list[Report], ...]
+    reports: tuple[list[View], ...]
     """Of each viewer that the rig may have, in their order."""
     bodies: list[Body]
     postures: list[Posture]
@@ -154,7 +154,7 @@ def read_recording(folder: Path) -> Recording:
         ) from error
     if not heads:
         raise RecordingError(f"{path} was damaged, or ended before it began: record again")
-    reports = tuple(found[topic] for topic, kind in KINDS.items() if kind is Report)
+    reports = tuple(found[topic] for topic, kind in KINDS.items() if kind is View)
     return Recording(heads[0], reports, found["/body"], found["/posture"], found["/cameras"])
 
 
@@ -205,7 +205,7 @@ def _keeper(writer: Any, file: IO[bytes]) -> Keep:
 
 def topic_of(message: Message) -> str:
     """Where a recording has a message."""
-    if isinstance(message, Report):
+    if isinstance(message, View):
         return f"/report/{message.viewer}"
     return f"/{type(message).__name__.lower()}"
 

@@ -14,7 +14,7 @@ from typing import IO, Any, Final, Generic, TypeVar, overload
 import msgspec
 
 from common.bus.message_codec import encode
-from common.bus.messages import Message, Report
+from common.bus.messages import Message, View
 from runtime.store.journal import FRAME, HEAD, KINDS, MAGIC, framed
 from runtime.store.runs import unwritable
 
@@ -22,7 +22,7 @@ Kind = TypeVar("Kind", bound=Message)
 
 MARKS: Final[dict[type[Message], bytes]] = {
     **{kind: mark for mark, kind in KINDS.items()},
-    Report: b"r",
+    View: b"r",
 }
 _DECODERS: Final[dict[bytes, msgspec.msgpack.Decoder[Any]]] = {
     mark: msgspec.msgpack.Decoder(kind) for kind, mark in MARKS.items()

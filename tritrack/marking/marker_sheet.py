@@ -7,7 +7,7 @@ import numpy as np
 
 from animator.marking.sheet import Kind, Mark, Number, Plan, Seen, Sheet, Size, Solved
 from calibration.paper.markers import Aim, Markers, MarkerView, fitted_lines, line_markers
-from common.bus.messages import Pixel
+from common.body.observation import Pixel
 from common.rig.rig_file import CalibrationError
 from tritrack.marking.marking_method import MarkingMethod, toml_number, toml_pixels
 from tritrack.marking.suspect_point import suspect_point

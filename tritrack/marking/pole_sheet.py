@@ -21,7 +21,7 @@ from calibration.paper.poles import (
     refuse_other_units,
 )
 from common.body.body import Vector
-from common.bus.messages import Pixel
+from common.body.observation import Pixel
 from common.rig.rig_file import CalibrationError
 from tritrack.marking.marking_method import MarkingMethod, toml_number, toml_pixels
 from tritrack.marking.suspect_point import suspect_point

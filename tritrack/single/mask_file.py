@@ -7,8 +7,8 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from common.bus.messages import Report
-from common.raster.silhouette_report import silhouette_report
+from common.bus.messages import View
+from common.raster.silhouette_report import silhouette_view
 
 MAX_PIXELS: Final = 1 << 30
 """No sequence is larger: 50,000 frames at 160x120."""
@@ -26,7 +26,7 @@ class MaskSequence(NamedTuple):
     """Silhouettes of one clip."""
 
     name: str
-    reports: list[Report]
+    reports: list[View]
 
 
 def is_mask_file(path: Path) -> bool:
@@ -65,7 +65,7 @@ def read_masks(path: Path, rate_hz: float = RATE_HZ) -> MaskSequence:
         raise MaskFileError(
             f"cannot read the masks {file_name}: {reason}; name an .npz of packed masks"
         ) from error
-    reports = [silhouette_report(1, mask, i, i / rate_hz) for i, mask in enumerate(masks)]
+    reports = [silhouette_view(1, mask, i, i / rate_hz) for i, mask in enumerate(masks)]
     return MaskSequence(wanted or Path(file_name).stem, reports)
 
 

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from animator.film import Film, Picture, write_film
 from animator.overlay import SHOWN, overlay
 from common.body.body import Vector
-from common.bus.messages import Body, Report
+from common.bus.messages import Body, View
 from common.config.picture_size import working_size
-from common.raster.silhouette_report import unpack
+from common.raster.silhouette_report import mask_of
 from common.rig.upright_camera import as_worked_on
 from common.video.decoding import Decoder
 from common.video.pictures import Wanted
@@ -71,7 +71,7 @@ def overlaid(found: Followed, decoder: Decoder) -> Iterator[Picture]:
         yield _drawn(found, report, body, picture)
 
 
-def _drawn(found: Followed, report: Report, body: Body, picture: Picture) -> Picture:
+def _drawn(found: Followed, report: View, body: Body, picture: Picture) -> Picture:
     joints_px, joints_m, confidence = np.full((15, 2), np.nan), np.full((15, 3), np.nan), [0.0] * 15
     if body.joints_m:
         joints_px = as_worked_on(np.array(body.joints_px[0]), report.upright)
@@ -80,7 +80,7 @@ def _drawn(found: Followed, report: Report, body: Body, picture: Picture) -> Pic
     told = f"{body.frame}  {body.captured_s:.2f} s  {body.status}"
     if body.joints_m:
         told += f"  {np.mean(confidence):.2f}"
-    return overlay(picture, unpack(report), joints_px, joints_m, np.array(confidence), told)
+    return overlay(picture, mask_of(report), joints_px, joints_m, np.array(confidence), told)
 
 
 def _pictures(found: Followed, decoder: Decoder) -> Iterator[Picture]:

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import JOINT_NAMES
+from common.body.observation import Landmarks
 from common.body.proportions import BONE_SHARES
-from common.bus.messages import Landmarks
 
 Bytes = NDArray[np.uint8]
 

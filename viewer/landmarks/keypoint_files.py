@@ -9,7 +9,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from common.bus.messages import Landmarks
+from common.body.observation import Landmarks
 from common.config.part_settings import SettingsError
 from common.rig.upright_camera import as_worked_on
 from common.video.clip_facts import ClipView

@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from common.bus.messages import Box
+from common.body.observation import Box
 from common.raster.similarity import Mask
 from common.video.pictures import Image
 

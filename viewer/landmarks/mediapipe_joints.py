@@ -5,7 +5,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from common.bus.messages import Landmarks
+from common.body.observation import Landmarks
 from common.video.pictures import Size
 from viewer.landmarks.fifteen_joints import facing_deg, fifteen, fifteen_shares
 from viewer.landmarks.keypoint_layouts import body_points, extremity_points

@@ -5,7 +5,7 @@ import time
 from importlib.util import find_spec
 from typing import Final, Self
 
-from common.bus.messages import Landmarks
+from common.body.observation import Landmarks
 from common.config.part_settings import SettingsError
 from common.config.picture_size import working_size
 from common.platform.platform import Broken, Child

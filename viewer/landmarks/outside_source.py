@@ -4,7 +4,7 @@ from typing import Protocol
 
 import numpy as np
 
-from common.bus.messages import Box, Landmarks
+from common.body.observation import Box, Landmarks
 from common.video.pictures import Decoded, Size
 
 

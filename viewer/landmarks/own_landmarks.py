@@ -8,7 +8,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from common.body.body import JOINT_NAMES, TILTED_DEG, Vector, lean_deg
-from common.bus.messages import Landmarks
+from common.body.observation import Landmarks
 from common.raster.similarity import Mask
 from common.video.pictures import Image
 from viewer.landmarks.landmark_looks import SHIPPED

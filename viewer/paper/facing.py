@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from common.body.body import Bdp
-from common.bus.messages import Facing
+from common.body.observation import Facing
 from common.raster.similarity import Mask
 
 FACADE_YAW_DEG, FLANK_YAW_DEG = 35.0, 55.0

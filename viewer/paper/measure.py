@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import Bdp, Elliptic, Round
+from common.body.observation import Box, Facing, Measure, Observation
 from common.body.proportions import SHOULDER_DROP, THESIS_RATIOS, TORSO_DEPTH_SHARE
-from common.bus.messages import Box, Facing, Guide, Measure, Report
+from common.bus.messages import Guide
 from common.raster.similarity import Mask
 from viewer.paper.fine_tuning import fine_tuned
 
@@ -43,18 +44,17 @@ class FacadeShape(NamedTuple):
 
 
 def opening_measure(
-    mask: Mask, report: Report, guide: Guide | None, facing: Facing
+    mask: Mask, person: Observation, guide: Guide | None, facing: Facing
 ) -> tuple[Measure | None, str]:
-    """What the opening posture gives, or why this is not it; nothing once measured."""
-    assert report.box is not None
+    """What the opening posture tells, or why this is not it; nothing once measured."""
     if guide is not None and guide.measured:
         return None, ""
-    if report.cut:
+    if person.cut:
         return None, "the person is partly outside the picture"
     if facing == "flank":
-        return measure_side(mask, report.box), ""
-    refusal = refusal_of(mask, report.box)
-    return (None, refusal) if refusal else (measure_front(mask, report.box), "")
+        return measure_side(mask, person.box), ""
+    refusal = refusal_of(mask, person.box)
+    return (None, refusal) if refusal else (measure_front(mask, person.box), "")
 
 
 def projection_width(mask: Mask) -> tuple[float, float]:

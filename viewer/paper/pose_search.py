@@ -8,8 +8,9 @@ from numpy.typing import NDArray
 
 from common.body.body import POSE_INDEX, rest_pose
 from common.body.kinematics import ALL_LIMBS
+from common.body.observation import Facing, Observation, Search
 from common.body.proportions import body_vector, stature, thesis_bdp
-from common.bus.messages import Facing, Guide, Report, ViewerNumber
+from common.bus.messages import Guide, ViewerNumber
 from common.config.part_settings import SearchSettings
 from common.method import Method
 from common.raster.kernel import CENTRE_X, CENTRE_Y
@@ -69,12 +70,14 @@ def init(
     return State(viewer, rotation_of(camera, viewer), settings, method, facing)
 
 
-def step(state: State, report: Report, mask: Mask, guide: Guide | None) -> tuple[State, Report]:
-    """The report of one silhouette with the pose that is found in it.
+def step(
+    state: State, person: Observation, mask: Mask, guide: Guide | None
+) -> tuple[State, Observation]:
+    """The person of one silhouette with the pose that is found in it.
 
     Args:
         state: From `init` or the step before.
-        report: Of a person.
+        person: As seen so far.
         mask: (H, W) the silhouette.
         guide: What the integrator made of the frame before; None at the start.
     """
@@ -83,24 +86,27 @@ def step(state: State, report: Report, mask: Mask, guide: Guide | None) -> tuple
     if known is not None:
         model = _expected(state, mask, known, facing)
     else:
-        model = _at_rest(state, mask, report, guide)
+        model = _at_rest(state, mask, person, guide)
     state, width_px, limits_px = _voted(state, mask, model, known)
     model = located(model, UPRIGHT if state.method.armless_shift else ALL_LIMBS)
     model, squatting = _limbs(state, model, known, facing)
     names = FACADE_ANGLES if facing == "facade" else FLANK_ANGLES
     angles_deg = {name: float(model.pose[POSE_INDEX[name]]) for name in names}
-    report = msgspec.structs.replace(
-        report,
+    search = Search(
+        (float(model.view[CENTRE_X]), float(model.view[CENTRE_Y])),
+        angles_deg,
+        squatting,
+        float(model.score),
+        model.matches,
+    )
+    person = msgspec.structs.replace(
+        person,
         upper_body_px=width_px,
         vote=state.vote,
         thresholds_px=limits_px,
-        root_px=(float(model.view[CENTRE_X]), float(model.view[CENTRE_Y])),
-        angles_deg=angles_deg,
-        squatting=squatting,
-        score=float(model.score),
-        matches=model.matches,
+        search=search,
     )
-    return state._replace(found=_found(facing, angles_deg, squatting)), report
+    return state._replace(found=_found(facing, angles_deg, squatting)), person
 
 
 def _found(facing: Facing, angles_deg: dict[str, float], squatting: bool) -> Found:
@@ -124,16 +130,15 @@ def _expected(state: State, mask: Mask, known: ExpectedBody, facing: Facing) -> 
     return model_over(mask, body_vector(known.bdp), pose, view)
 
 
-def _at_rest(state: State, mask: Mask, report: Report, guide: Guide | None) -> PosedModel:
+def _at_rest(state: State, mask: Mask, person: Observation, guide: Guide | None) -> PosedModel:
     """The model at rest, laid into the silhouette's box: nothing is known of its pose.
 
     The body is the guide's if one was known before, else the thesis's proportions (T4).
     """
-    assert report.box is not None
     bdp = thesis_bdp(1.0) if guide is None or guide.bdp is None else guide.bdp
     facing = state.vote if guide is None else guide.facing[state.viewer - 1]
-    sole = report.box.bottom + 1
-    scale = (sole - report.box.top) / stature(bdp)
+    sole = person.box.bottom + 1
+    scale = (sole - person.box.top) / stature(bdp)
     pose = rest_pose()
     pose[POSE_INDEX["torso_y"]] = yaw_of(facing, state.viewer)
     columns = np.arange(mask.shape[1]) + 0.5

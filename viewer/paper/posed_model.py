@@ -7,7 +7,8 @@ from numpy.typing import NDArray
 
 from common.body.body import POSE_INDEX, POSE_NAMES, YAW_DEG, Vector
 from common.body.kinematics import ALL_LIMBS
-from common.bus.messages import Facing, ViewerNumber
+from common.body.observation import Facing
+from common.bus.messages import ViewerNumber
 from common.raster.bits import Bits, count, pack_words
 from common.raster.kernel import CENTRE_X, CENTRE_Y, DEPTH, FOCAL_X, FOCAL_Y, SHIFT, VIEW, match
 from common.raster.similarity import Mask

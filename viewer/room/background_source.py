@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from common.atomic_file import replacing
-from common.bus.messages import Landmarks
+from common.body.observation import Landmarks
 from common.config.part_settings import SilhouetteSettings
 from common.video.clip_facts import ClipView
 from common.video.clip_sources import ClipError

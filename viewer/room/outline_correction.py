@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import Floats
-from common.bus.messages import Landmarks
+from common.body.observation import Landmarks
 from common.compiled import compiled
 from viewer.landmarks.body_region import (
     BONES,

@@ -6,7 +6,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from common.bus.messages import Landmarks
+from common.body.observation import Landmarks
 from common.video.pictures import Image
 from viewer.landmarks.body_region import Bytes, body_region
 from viewer.landmarks.own_landmarks import found_anywhere, found_between

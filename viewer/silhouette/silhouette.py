@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from common.bus.messages import Box
+from common.body.observation import Box
 from common.config.part_settings import SilhouetteSettings
 from common.method import DEFAULT, Method
 from common.raster.silhouette_report import box_of, is_cut

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from common.body.body import JOINT_NAMES, OTHER_SIDE, Vector
 from common.body.kinematics import joints
+from common.body.observation import Fit
 from common.body.stick_body import (
     ADULT,
     BREADTH,
@@ -17,7 +18,6 @@ from common.body.stick_body import (
     joints_px,
     pose_of,
 )
-from common.bus.messages import Fit
 from common.method import Method
 from common.raster.bits import pack_words
 from common.raster.kernel import CENTRE_X, CENTRE_Y, FOCAL_X

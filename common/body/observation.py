@@ -1,0 +1,125 @@
+"""One person as one camera sees them in one frame: silhouette, landmarks, and what methods add."""
+
+from typing import Literal
+
+import msgspec
+
+from common.body.body import Bdp
+
+Facing = Literal["facade", "flank"]
+Pixel = tuple[float, float]
+
+
+class Box(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """The boundary of a silhouette, pixels: first and last column, first and last row (P11)."""
+
+    left: int
+    right: int
+    top: int
+    bottom: int
+
+
+class Measure(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """What one viewer reads off the opening posture, in its own pixels (section 2.4)."""
+
+    height_px: float
+    """t_n: height of the silhouette."""
+    centre_px: Pixel
+    """Where the centre of the body (x_c, y_c) lies in the picture."""
+    depth_px: float
+    """Half width of the trunk as this view shows it: SR_torso where it sees the flank (P21)."""
+    bdp_px: Bdp | None = None
+    """All BDPs but the trunk's depth, where this view sees the facade."""
+    arms_z_deg: tuple[float, float] | None = None
+    """theta_Z of the right and the left shoulder in the opening posture (P19)."""
+
+
+class Fit(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """The stick body that one viewer fitted to its silhouette (Demir 2006, 3.1.4)."""
+
+    joints_px: tuple[Pixel, ...]
+    """JOINT_NAMES order; r is on the left of the picture (T10)."""
+    ratios: tuple[float, ...]
+    """LIMBS order: how much of its length each segment shows, in [0, 1]."""
+    breadth: float
+    """How much of its breadth the trunk shows, in [0, 1]."""
+    stature_px: float
+    """Height that the body would have standing upright."""
+    hidden: tuple[bool, ...]
+    """LIMBS order: what the silhouette does not show."""
+    score: float
+    """Similarity of silhouette and stick body, in [0, 1]."""
+    matches: int
+
+
+class Landmarks(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Where one view's picture itself shows the joints, whatever source told it."""
+
+    joints_px: tuple[Pixel, ...]
+    """JOINT_NAMES order, pixels of the reported silhouette: its first pixel's centre is (0.5, 0.5).
+    What is not seen stands anywhere, with confidence 0."""
+    confidence: tuple[float, ...]
+    """JOINT_NAMES order, in [0, 1]: how probably each is less than 0.03 statures off (50 mm), where
+    left and right are not exchanged: that is another question, and the facing tells more of it."""
+    facing_deg: float = 0.0
+    """Which way the person faces: 0 towards this camera, 90 to the right of its picture, in
+    (-180, 180]. About the vertical; about the trunk where that leans by more than 30 degrees in the
+    picture: as if the picture were turned until it is upright."""
+    facing_confidence: float = 0.0
+    """How probably that is less than 45 degrees off, in [0, 1]; 0: the source does not tell."""
+    extremities_px: tuple[Pixel, ...] = ()
+    """EXTREMITY_NAMES order, as joints_px; empty: the source does not look for them."""
+    extremities_confidence: tuple[float, ...] = ()
+    """EXTREMITY_NAMES order, as confidence."""
+    second_px: tuple[Pixel, ...] = ()
+    """Where else each joint may be, as joints_px; empty: the source tells one place alone."""
+    second_confidence: tuple[float, ...] = ()
+    """How probably it is there instead, as confidence."""
+
+
+class Search(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """What a viewer's search for the pose found in one silhouette (sections 3.4 and 3.5)."""
+
+    root_px: Pixel
+    """Where it has the navel in the picture."""
+    angles_deg: dict[str, float]
+    """The angles that this view estimates; names as in ANGLE_NAMES."""
+    squatting: bool
+    """The navel is lower than in the opening posture (P33)."""
+    score: float
+    """Similarity of silhouette and model in that pose, in [0, 1]."""
+    matches: int
+    """How many times a model was matched for this frame."""
+
+
+class Observation(
+    msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True
+):
+    """One person as one camera sees them in one frame."""
+
+    track: int = 0
+    """The viewer's own number of the person, the same from frame to frame."""
+    width: int
+    height: int
+    """Of the picture that the silhouette is of, pixels."""
+    silhouette: bytes
+    """`pack(mask)`: the region and nothing else of the picture."""
+    box: Box
+    area_px: int
+    cut: bool = False
+    """The silhouette touches the picture's border: the person is partly outside."""
+    landmarks: Landmarks | None = None
+    """None where the source of landmarks sees no person here, or there is none."""
+    vote: Facing = "facade"
+    """What this view alone takes itself for (P26)."""
+    upper_body_px: float = 0.0
+    """W_u-body: width of the upper body, the evidence behind `vote` (P25)."""
+    thresholds_px: tuple[float, float] = (0.0, 0.0)
+    """th_low and th_high that the vote was held against."""
+    measure: Measure | None = None
+    refusal: str = ""
+    """Why the posture is not the opening posture, where it is not."""
+    search: Search | None = None
+    """The pose, where this view searched for it."""
+    stick: Fit | None = None
+    """The stick body, where the guide asked for one."""
