@@ -184,3 +184,12 @@ def test_a_format_that_there_is_not_is_refused_by_name(run: Path) -> None:
     written = tritrack.export(str(run), "bvh", run / "further.bvh", scale="cm")
     assert written["files"] == [str(run / "further.bvh")]
     assert (run / "further.bvh").read_text().startswith("HIERARCHY")
+
+
+def test_the_old_name_of_a_view_works_with_a_word_on_the_new_one() -> None:
+    import tritrack
+
+    with pytest.warns(DeprecationWarning, match=r"use tritrack\.View"):
+        old = tritrack.Report
+    assert old is tritrack.View
+    assert "Report" not in tritrack.__all__

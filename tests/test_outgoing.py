@@ -309,6 +309,17 @@ def test_only_the_view_that_is_alone_and_cut_says_what_is_outside(state: State) 
         assert not outgoing._outside(whole, pixels).any()
 
 
+@pytest.mark.parametrize(
+    ("seen_by", "says"),
+    [("11", "both"), ("10", "1"), ("01", "2"), ("00", "none"), ("1", "1"), ("101", "1+3")],
+)
+def test_of_two_cameras_a_word_says_who_sees_the_person_and_of_more_their_numbers(
+    seen_by: str, says: str
+) -> None:
+    person = seen(1).person
+    assert outgoing._views(tuple(person if one == "1" else None for one in seen_by)) == says
+
+
 def test_matches_of_a_stick_count_with_those_of_its_viewer() -> None:
     fit: Any = SimpleNamespace(matches=7)
     one: Any = SimpleNamespace(search=SimpleNamespace(matches=30), stick=fit)
