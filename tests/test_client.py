@@ -15,7 +15,7 @@ from threadpoolctl import threadpool_info, threadpool_limits
 
 import tritrack
 from common.bus.bus import BusError
-from common.bus.messages import Body
+from common.bus.messages import MOST_VIEWS, Body
 from runtime.offline import lockstep
 from tritrack import subscribe, track
 from tritrack.exporting import ExportError
@@ -35,7 +35,7 @@ def test_a_clip_is_tracked_by_its_settings_with_the_views_that_are_named(
     monkeypatch.setattr(lockstep, "track_clip", tracked)
     bodies: list[object] = [*track(tmp_path, (2,))]
     assert bodies == ["a", "b"]
-    assert asked == [(str(tmp_path), [1, 2], (2,))]
+    assert asked == [(str(tmp_path), [*range(1, MOST_VIEWS + 1)], (2,))]
 
 
 def test_a_loop_hears_every_body_and_ends_with_the_run() -> None:
