@@ -193,4 +193,4 @@ WORKED_WITH: dict[str, tuple[Callable[[Path], None], str]] = {
 def of_one_view(settings: Settings, view: int) -> Settings:
     """Settings of one camera of a clip, which a folder of two does not mean."""
     camera = CameraSettings(source=f"{settings.clip}/cam{view}.avi")
-    return msgspec.structs.replace(settings, clip="", **{f"camera_{view}": camera})
+    return msgspec.structs.replace(settings, clip="", cameras={f"cam{view}": camera})

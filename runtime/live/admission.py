@@ -33,7 +33,6 @@ def admitted(settings: Settings, record: bool, console: Console) -> Settings:
         LiveRefused, RecordingError, PortHeld, PageError, KeysError: When they cannot be.
     """
     refuse_mode(settings)
-    refuse_a_third_camera(settings)
     if record:
         refuse_without_library()
     found = with_free_endpoint(settings)
@@ -53,11 +52,12 @@ def opened(settings: Settings, name: str) -> Clip:
         name: Of the run; the clip's when empty.
 
     Raises:
-        ClipError, ModelError, SettingsError: When a process would fail.
+        ClipError, LiveRefused, ModelError, SettingsError: When a process would fail.
     """
     from common.video.clips import open_clip
     from runtime.offline.lockstep import measured_before
 
+    refuse_a_third_camera(settings)
     clip = open_clip(settings)
     clip = msgspec.structs.replace(
         clip,
