@@ -17,6 +17,7 @@ import pytest
 import zenoh
 from local_bus import LocalBus
 
+from common.body.observation import Box, Observation
 from common.bus import bus as bus_module
 from common.bus.bus import Bus, BusError, Stopped, open_client, open_hub, unanswered
 from common.bus.bus_access import access_of
@@ -42,10 +43,25 @@ def a_guide(frame: int) -> Guide:
     return Guide(frame=frame, captured_s=frame / 15, clock_s=0.0, frames=(frame, frame))
 
 
-def a_report(viewer: int, frame: int) -> View:
-    fields = {"viewer": viewer, "width": 8, "height": 2, "silhouette": b"\x00\xff", "box": None}
-    times = {"frame": frame, "captured_s": frame / 15, "clock_s": 0.0}
-    return msgspec.convert({**fields, **times}, View)
+def a_report(viewer: int, frame: int, upper_body_px: float = 0.0) -> View:
+    box = Box(left=1, right=5, top=0, bottom=1)
+    person = Observation(
+        width=8,
+        height=2,
+        silhouette=b"\x3e\x3e",
+        box=box,
+        area_px=10,
+        upper_body_px=upper_body_px,
+    )
+    return View(
+        frame=frame,
+        captured_s=frame / 15,
+        clock_s=0.0,
+        viewer=viewer,
+        width=8,
+        height=2,
+        people=(person,),
+    )
 
 
 @pytest.fixture
@@ -135,8 +151,8 @@ def test_a_room_does_not_hear_another(place: Place) -> None:
         b"\xc1 no message",
         b"\x91" * 5000,
         encode(a_report(1, 4))[:-3],
-        encode(a_report(1, 4)).replace(
-            b"\xa5score\xcb" + bytes(8), b"\xa5score\xcb\x7f\xf8" + bytes(6)
+        encode(a_report(1, 4, 2.0)).replace(
+            b"\xadupper_body_px\xcb\x40" + bytes(7), b"\xadupper_body_px\xcb\x7f\xf8" + bytes(6)
         ),
         encode(msgspec.structs.replace(a_report(1, 4), protocol=99)),
         encode(a_report(2, 4)),
@@ -368,7 +384,7 @@ def test_the_local_bus_hands_on_what_was_encoded_and_refuses_what_is_not_finite(
     inbox = bus.subscribe(View)
     said = a_report(1, 3)
     bus.publish(said)
-    bus.publish(msgspec.structs.replace(said, score=float("nan")))
+    bus.publish(a_report(1, 4, float("nan")))
     heard = inbox.drain()
     assert heard == [said]
     assert heard[0] is not said

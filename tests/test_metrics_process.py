@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import msgspec
@@ -239,7 +240,7 @@ def test_metrics_are_served_of_the_settings_room_by_a_process_that_stands_back(
     monkeypatch.setattr(f"{place}.process", lambda *given: opened("process", given, stop))
     monkeypatch.setattr(f"{place}.served", lambda *given: opened("served", given, None))
     monkeypatch.setattr(f"{place}.open_client", lambda *given: opened("client", given, bus))
-    monkeypatch.setattr(f"{place}.os.nice", asked.append)
+    monkeypatch.setattr(f"{place}.platform", lambda: SimpleNamespace(give_way=asked.append))
     monkeypatch.setattr(f"{place}.run", lambda *given: asked.append(given[1:]))
     watched = bus.watch_alive()
     settings = Settings(room="hall", metrics="127.0.0.1:9464")

@@ -74,7 +74,7 @@ def test_a_model_is_replaced_only_by_force_and_landmarks_go_on_where_they_were(
     typed(train, "--what", "landmarks", *words, "--out", here / "m.npz", "--json")
     assert taught.last == ([Path("f.mp4"), Path("g.mp4")], "keys", here / "m.npz", True)
     said = typed(train, "--film", "f.mp4", "--out", "new.npz")
-    assert (said.exit_code, "only landmarks are learnt from films" in said.output) == (2, True)
+    assert (said.exit_code, "only landmarks are learnt from videos" in said.output) == (2, True)
 
 
 def test_a_posture_is_taught_by_takes_or_before_cameras_not_by_both(

@@ -73,7 +73,7 @@ def drawing(monkeypatch: pytest.MonkeyPatch) -> Any:
     """What each frame is drawn from."""
     noted: Any = []
     monkeypatch.setattr(overlay_film, "overlay", lambda *given: noted.append(given) or given[0])
-    monkeypatch.setattr(overlay_film, "unpack", lambda report: f"silhouette {report.captured_s}")
+    monkeypatch.setattr(overlay_film, "mask_of", lambda report: f"silhouette {report.captured_s}")
     monkeypatch.setattr(
         overlay_film, "as_worked_on", lambda joints_px, _: joints_px + np.array([1.0, 2.0])
     )

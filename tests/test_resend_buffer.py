@@ -10,7 +10,7 @@ WENT, CAME = Alive(HUB, alive=False), Alive(HUB, alive=True)
 
 
 def report(frame: int) -> View:
-    fields = {"viewer": 1, "width": 8, "height": 1, "silhouette": b"\0", "box": None}
+    fields = {"viewer": 1, "width": 8, "height": 1}
     times = {"frame": frame, "captured_s": frame / 15, "clock_s": 0.0}
     return msgspec.convert({**fields, **times}, View)
 

@@ -60,7 +60,7 @@ def test_a_person_of_the_stature_that_is_typed_calibrates_all_clips(by_clips: Ca
     by_clips.answer = FoundByClips(RIG, unsure, CLOCKS)
     said = typed(calibrate_app, "person", "a", "--json")
     assert by_clips.last == ([Path("a")], Given(1.75, None))
-    assert "not known well enough: focal lengths to 9 % only, clocks: film" in said.output
+    assert "not known well enough: focal lengths to 9 % only, clocks: record" in said.output
     assert '"focal_px": 400.0' in said.output
 
 

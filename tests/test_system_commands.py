@@ -107,7 +107,10 @@ def test_every_command_has_help_with_an_example(tritrack: Commands, words: list[
         (["zzz"], "No such command 'zzz'; see: "),
         (["trak"], "Did you mean 'track'"),
         (["track"], "Missing argument 'clips'; see: "),
-        (["track", "--views", "3", "x"], "'3' is not one of '12', '1', '2'; see: "),
+        (
+            ["track", "--views", "left", "x"],
+            "cameras are numbers with commas between: 2 or 1,3; got left",
+        ),
         (["track", "--nosuch", "x"], "No such option"),
         (["--log-level", "loud", "doctor"], "'loud' is not one of"),
         (
@@ -435,7 +438,7 @@ def test_a_view_that_is_not_there_is_named(tritrack: Commands, clip: Path, tmp_p
     (folder / "cam2.avi").unlink()
     said = tritrack("track", folder, "--views", "2", "--out", tmp_path / "out")
     assert said.code == 2
-    assert "there is nothing to look at" in said.errors[0]
+    assert "alone has cam1.avi and no cam2.*: add it" in said.errors[0]
 
 
 def test_live_refuses_a_model_trained_on_other_postures(

@@ -30,7 +30,7 @@ class Work(NamedTuple):
     network: nn.Module
     mean: nn.Module
     """A network whose weights are the running mean of those of `network`."""
-    adam: torch.optim.AdamW
+    adam: "torch.optim.AdamW"
     batch: int
     """The next one."""
 

@@ -115,9 +115,12 @@ def view(
 
     Example: tritrack view configs/live.toml --viewer 1
     """
+    from runtime.live.admission import refuse_a_third_camera
     from viewer.__main__ import main as viewer_main
 
-    viewer_main(live_settings(settings_file), viewer)
+    settings = live_settings(settings_file)
+    refuse_a_third_camera(settings)  # and no clip at all: at once, not when the integrator answers
+    viewer_main(settings, viewer)
 
 
 def integrate(settings_file: ConfigPath) -> None:
@@ -211,9 +214,8 @@ def bridge(
 
 def live_settings(path: Path) -> Settings:
     """The settings of a process of a live run."""
-    from runtime.live.admission import refuse_a_third_camera, refuse_mode
+    from runtime.live.admission import refuse_mode
 
     settings = config_file.load(path)
     refuse_mode(settings)
-    refuse_a_third_camera(settings)
     return settings
