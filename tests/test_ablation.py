@@ -35,6 +35,7 @@ def same(one: dict[str, np.ndarray], other: dict[str, np.ndarray]) -> bool:
     return all(value.tobytes() == other[name].tobytes() for name, value in one.items())
 
 
+@pytest.mark.slow
 def test_default_mode_with_every_departure_off_is_paper_mode(
     ablation: ModuleType, clip: Path
 ) -> None:

@@ -173,6 +173,7 @@ def real_runs(
     return [*pairs, ({**poses, "joints_m": spoiled}, truth)]
 
 
+@pytest.mark.slow
 def test_the_yardstick_says_the_same(
     yardstick: ModuleType, real_runs: list[tuple[Arrays, Arrays]]
 ) -> None:

@@ -65,6 +65,7 @@ def test_the_opening_frames_show_the_room(clip: Path, decoder: Decoder) -> None:
     assert share_off(room, room_of(clip)) < 0.001
 
 
+@pytest.mark.slow
 def test_somebody_in_the_opening_frames_is_noticed(
     clip: Path, decoder: Decoder, tmp_path: Path
 ) -> None:

@@ -42,6 +42,7 @@ def test_a_clip_that_shows_nobody_is_tracked_and_that_is_said(
     assert "warning: clip: nobody was seen" in said.file.getvalue()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("views", VIEWS)
 @pytest.mark.parametrize("calibrated", [True, False])
 def test_a_bar_hears_of_every_frame_of_a_clip(

@@ -26,6 +26,7 @@ def result() -> dict[str, Any]:
     return bench(quick=True)
 
 
+@pytest.mark.slow
 def test_every_figure_is_finite_and_positive(result: dict[str, Any]) -> None:
     for one in result["figures"]:
         assert math.isfinite(one["value"])

@@ -72,6 +72,7 @@ def errors(found: BoardCalibration, rig: FilmedRig) -> Iterator[tuple[float, flo
         yield float(np.linalg.norm(off_m)) * 1e3, float(np.degrees(turned))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [0, 1])
 def test_a_rig_is_found_within_ten_millimetres_and_a_fifth_of_a_degree(seed: int) -> None:
     rig = random_rig(seed, (640, 480), POSTER)
@@ -122,6 +123,7 @@ def test_a_pose_that_one_film_shows_wrongly_is_let_go() -> None:
         assert turned_deg < 0.2
 
 
+@pytest.mark.slow
 def test_the_floor_is_where_the_user_says() -> None:
     rig = random_rig(0, (640, 480), POSTER, 32)
     first_laid = len(rig.poses) - 3

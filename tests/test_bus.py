@@ -295,6 +295,7 @@ def test_a_killed_process_is_seen_to_go(place: Place) -> None:
     assert alive.take(SOON_S) == Alive("viewer-1", alive=False)
 
 
+@pytest.mark.slow
 def test_a_process_that_hangs_counts_as_gone(place: Place) -> None:
     """Zenoh's own lease of 10 s would be 150 frames."""
     alive = place.hub.watch_alive()
@@ -326,6 +327,7 @@ def test_a_client_without_a_hub_says_so_in_bounded_time(endpoint: str) -> None:
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.slow
 def test_a_port_that_accepts_and_stays_silent_is_no_hub() -> None:
     with socket.create_server(("127.0.0.1", 0)) as silent:
         endpoint = f"tcp/127.0.0.1:{silent.getsockname()[1]}"

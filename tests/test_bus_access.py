@@ -126,6 +126,7 @@ def delivered(settings: BusSettings) -> tuple[int, int]:
         return forged, true
 
 
+@pytest.mark.slow
 def test_of_ten_thousand_forged_messages_none_is_delivered(keys: Path) -> None:
     """Issue 15: 0 of 10,000 under access control; the same forger on a plain bus is heard."""
     assert delivered(with_keys(keys)) == (0, 20)

@@ -168,6 +168,7 @@ def test_a_killed_child_is_reported_with_how_far_it_came(tmp_path: Path) -> None
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.slow
 def test_a_stuck_child_is_waited_for_in_bounded_time(tmp_path: Path) -> None:
     video = written(tmp_path / "cam1.avi", frames=400, size=(320, 240))
     with Decoder(stall_s=3.0) as own:  # a busy machine takes a second to start it

@@ -92,6 +92,7 @@ def test_track_gives_the_bodies_of_a_clip(clip: Path) -> None:
     assert sum(bool(body.joints_m) for body in bodies) > len(bodies) / 2
 
 
+@pytest.mark.slow
 def test_track_takes_one_thread_of_numpys_and_gives_back_what_the_program_had(
     clip: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -136,6 +137,7 @@ def test_the_example_of_a_live_elbow_ends_with_the_run() -> None:
     assert lines[0].endswith("degrees")
 
 
+@pytest.mark.slow
 def test_the_example_of_a_clip_finds_a_raised_wrist(clip: Path) -> None:
     height_m = float(run_example("highest_wrist.py", str(clip)).split()[0])
     assert 0.5 < height_m < 2.5
@@ -167,6 +169,7 @@ def run(clip: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return out / clip.name
 
 
+@pytest.mark.slow
 def test_the_examples_of_the_reference_are_true(clip: Path, run: Path) -> None:
     examples = doctest.DocTestFinder()
     names = ("subscribe", "track", "load_run", "export")

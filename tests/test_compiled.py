@@ -103,6 +103,7 @@ def names_the_program(path: Path) -> bool:
     return b"__main__" in content or b"__mp_main__" in content
 
 
+@pytest.mark.slow
 def test_a_callee_that_changed_in_another_file_is_noticed(house: Path) -> None:
     assert answer(house, "-c", ASK) == "3"
     callee = house / "viewer" / "callee.py"
@@ -113,6 +114,7 @@ def test_a_callee_that_changed_in_another_file_is_noticed(house: Path) -> None:
     assert len(kept(house)) == 4
 
 
+@pytest.mark.slow
 def test_a_constant_that_changed_in_another_file_is_noticed(house: Path) -> None:
     (house / "viewer" / "constants.py").write_text("STEP = 1\n")
     callee = CALLEE.replace("x + 1", "x + STEP").replace(
@@ -124,6 +126,7 @@ def test_a_constant_that_changed_in_another_file_is_noticed(house: Path) -> None
     assert answer(house, "-c", ASK) == "5"
 
 
+@pytest.mark.slow
 def test_an_edit_of_what_is_not_imported_compiles_nothing(house: Path) -> None:
     answer(house, "-c", ASK)
     before = kept(house)
@@ -133,6 +136,7 @@ def test_an_edit_of_what_is_not_imported_compiles_nothing(house: Path) -> None:
     assert kept(house) == before
 
 
+@pytest.mark.slow
 def test_of_older_sources_the_newest_stay(house: Path) -> None:
     for step in range(KEPT + 2):
         (house / "viewer" / "callee.py").write_text(CALLEE.replace("+ 1", f"+ {step}"))
@@ -143,6 +147,7 @@ def test_of_older_sources_the_newest_stay(house: Path) -> None:
     assert kept(house) == before
 
 
+@pytest.mark.slow
 def test_a_second_process_compiles_nothing(house: Path) -> None:
     answer(house, "-c", ASK)
     before = kept(house)

@@ -23,6 +23,7 @@ def strip(clip: Path) -> np.ndarray:
     return np.asarray(picture)
 
 
+@pytest.mark.slow
 def test_a_strip_has_a_row_a_view(strip: np.ndarray) -> None:
     assert strip.shape == (2 * WIDTH_PX * 3 // 4, SHOWN * WIDTH_PX, 3)
 

@@ -198,6 +198,7 @@ def test_a_format_without_its_library_names_the_cure(
         export_run(run, to, None)
 
 
+@pytest.mark.slow
 def test_a_run_that_is_too_long_for_c3d_is_refused_before_its_end_is_lost(run: Path) -> None:
     """The last frame's number has 16 bits in the header; more are written, and never read."""
     pytest.importorskip("ezc3d", reason="pip install 'tritrack[export]'")

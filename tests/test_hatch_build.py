@@ -103,6 +103,7 @@ def test_renaming_is_that_of_the_tree_and_no_line_moves(lines: list[str]) -> Non
     assert renamed(new.encode(), NAMES).decode() == new
 
 
+@pytest.mark.slow
 def test_every_file_of_ours_can_be_moved() -> None:
     """Nothing is left of the old names, and a traceback's line is that of the checkout."""
     old = re.compile(rf"^\s*(from|import) ({'|'.join(NAMES)})\b", re.MULTILINE)

@@ -35,6 +35,7 @@ def film() -> tuple[Image, list[Image], list[Mask]]:
     return shots[0].frames[0], [shot.frames[0] for shot in shown], [shot.masks[0] for shot in shown]
 
 
+@pytest.mark.slow
 def test_a_background_with_somebody_in_it_gives_way_to_the_empty_room() -> None:
     empty, frames, _ = film()
     right, wrong = learn([empty]), learn(frames[:1])

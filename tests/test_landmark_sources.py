@@ -109,6 +109,7 @@ def test_both_views_of_an_instant_have_their_own_landmarks(clip: Path, tmp_path:
                 )
 
 
+@pytest.mark.slow
 def test_a_live_viewer_reports_the_landmarks_that_a_recorded_one_does(
     clip: Path, tmp_path: Path
 ) -> None:

@@ -107,6 +107,7 @@ def expected_sprung(
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(3))
 def test_springs_are_two_steps_of_gauss_and_newton(seed: int) -> None:
     rng = np.random.default_rng(seed)

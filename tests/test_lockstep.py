@@ -47,6 +47,7 @@ def tracked(clip: Path) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
     return poses([body for body in done.bodies if body.frame >= 0]), done.facts
 
 
+@pytest.mark.slow
 def test_the_same_clip_gives_the_same_bytes(clip: Path, tmp_path: Path) -> None:
     for out in ("first", "second"):
         track_all([clip], tmp_path / out, Asked(), QUIET)
@@ -54,6 +55,7 @@ def test_the_same_clip_gives_the_same_bytes(clip: Path, tmp_path: Path) -> None:
     assert first.read_bytes() == second.read_bytes()
 
 
+@pytest.mark.slow
 def test_nothing_is_written_but_the_run_folder(clip: Path, tmp_path: Path) -> None:
     before = {path: path.stat().st_mtime_ns for path in clip.parent.rglob("*")}
     track_all([clip], tmp_path, Asked(), QUIET)
@@ -62,6 +64,7 @@ def test_nothing_is_written_but_the_run_folder(clip: Path, tmp_path: Path) -> No
     assert files == {f"{clip.name}/poses.npz", f"{clip.name}/summary.json"}
 
 
+@pytest.mark.slow
 def test_the_order_of_clips_does_not_change_one(clip: Path, tmp_path: Path) -> None:
     """A decoder that was left in the middle of a film, or used before, reads the next as new."""
     other = copied(clip, tmp_path / "other")
@@ -89,6 +92,7 @@ def only(kept: list[int]) -> Callable[[Film], Film]:
     return lambda film: [film[i] for i in kept]
 
 
+@pytest.mark.slow
 def test_frames_that_one_camera_missed_are_paired_by_their_moments(
     clip: Path, tmp_path: Path
 ) -> None:
@@ -108,6 +112,7 @@ def test_frames_that_one_camera_missed_are_paired_by_their_moments(
     assert facts["warnings"] == []
 
 
+@pytest.mark.slow
 def test_the_stressed_clip_has_a_row_for_each_of_camera_1s_frames(data_dir: Path) -> None:
     folder = data_dir / "dev_stress" / "frame_drops"
     rows, facts = tracked(folder)
@@ -133,6 +138,7 @@ def test_a_command_line_goes_before_the_settings() -> None:
         overridden(given, None, "5000x50")
 
 
+@pytest.mark.slow
 def test_a_pair_filmed_without_calibration_is_tracked(data_dir: Path, tmp_path: Path) -> None:
     """configs/frontside_walk.toml: its run folder bears the file's name, not a video's."""
     config = Path(__file__).parents[1] / "configs" / "frontside_walk.toml"

@@ -36,6 +36,7 @@ def test_clips_are_named_after_performer_take_and_posture(tmp_path: Path) -> Non
     assert (tmp_path / "calibration.json").is_file()
 
 
+@pytest.mark.slow
 def test_free_motion_is_of_no_posture(tmp_path: Path) -> None:
     """posture_id -1 tells a live run not to ask a model for it."""
     (folder,) = made(tmp_path, motion="free", postures=())

@@ -97,6 +97,7 @@ def test_an_answer_that_is_late_is_let_go_and_the_next_belong_to_their_frames(
         assert "too slow for camera 1" in odd
 
 
+@pytest.mark.slow
 def test_a_child_that_is_stuck_is_ended_in_bounded_time(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -122,6 +123,7 @@ def children() -> list[psutil.Process]:
     ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM], ids=["killed", "ended"])
 def test_the_child_ends_with_its_viewer(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, number: signal.Signals

@@ -44,6 +44,7 @@ def test_metrics_and_health_are_answered_and_nothing_else() -> None:
         assert door.connect_ex((host, int(port))) != 0, "it is closed"
 
 
+@pytest.mark.slow
 def test_who_connects_and_says_nothing_keeps_nobody_waiting() -> None:
     address = free_address()
     host, port = address.split(":")

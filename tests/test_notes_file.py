@@ -20,6 +20,7 @@ from common.notes.notes_file import (
 )
 
 
+@pytest.mark.slow
 @settings(max_examples=30)
 @given(st.lists(inputs, max_size=6), st.text(max_size=8))
 def test_what_is_written_is_read_again(

@@ -74,6 +74,7 @@ def test_a_missing_opening_clip_is_named(clip: Path) -> None:
         track_clip(Settings(clip=str(clip), opening=str(clip.parent / "no_such")), decoders)
 
 
+@pytest.mark.slow
 def test_a_run_knows_the_body_from_its_first_frame_on(clip: Path) -> None:
     with Decoders() as decoders:
         known = track_clip(Settings(clip=str(clip)), decoders).bodies[-1].bdp

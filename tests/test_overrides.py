@@ -44,6 +44,7 @@ def test_landmarks_that_are_not_there_are_told_as_that(
         overridden(Settings(), None, None, named)
 
 
+@pytest.mark.slow
 def test_track_looks_by_the_landmarks_that_are_named(clip: Path, tmp_path: Path) -> None:
     """Of both, that of the command counts."""
     file = tmp_path / "said.toml"
@@ -56,6 +57,7 @@ def test_track_looks_by_the_landmarks_that_are_named(clip: Path, tmp_path: Path)
     assert poses(tmp_path / "with" / "said") == plain
 
 
+@pytest.mark.slow
 def test_single_looks_by_the_landmarks_that_are_named(clip: Path, tmp_path: Path) -> None:
     video = next(clip.glob("cam1.*"))
     file = tmp_path / "said.toml"

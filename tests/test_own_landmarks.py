@@ -73,6 +73,7 @@ def off(found: Landmarks | None) -> float:
     )
 
 
+@pytest.mark.slow
 def test_the_joints_of_somebody_with_an_outline_are_found() -> None:
     shot = acted()[0]
     assert off(own_landmarks(shot.frames[0], seen(shot.masks[0]), None)) < 0.03

@@ -37,6 +37,7 @@ def test_the_papers_rig_is_found_from_one_short_clip_whose_sides_are_exchanged_a
     assert found.quality.gap_mm < 40.0
 
 
+@pytest.mark.slow
 def test_a_persons_stature_is_the_measure_of_all_lengths() -> None:
     shown = filmed_by_the_papers_rig(5, "squat")
     small, tall = (calibrated_by_person((shown.sighting,), m).quality for m in (1.5, 1.8))
@@ -46,6 +47,7 @@ def test_a_persons_stature_is_the_measure_of_all_lengths() -> None:
         )
 
 
+@pytest.mark.slow
 def test_a_posture_on_a_spot_says_that_it_does_not_tell_focal_lengths() -> None:
     shown = filmed_by_the_papers_rig(4, "swing_both_backforth")
     unsure = calibrated_by_person((shown.sighting,), shown.stature_m).quality.unsure

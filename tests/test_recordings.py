@@ -60,6 +60,7 @@ def same(first: list[Recording], second: list[Recording]) -> bool:
     )
 
 
+@pytest.mark.slow
 def test_clips_their_runs_and_what_was_kept_give_the_same(
     clips: list[Path], runs: list[Path], tmp_path: Path, tracked_names: list[str]
 ) -> None:
@@ -73,6 +74,7 @@ def test_clips_their_runs_and_what_was_kept_give_the_same(
     assert [one.clip for one in first] == list(map(str, clips))
 
 
+@pytest.mark.slow
 def test_work_that_was_stopped_goes_on_where_it_was(
     clips: list[Path],
     tmp_path: Path,
@@ -147,6 +149,7 @@ def test_a_damaged_run_is_named(runs: list[Path], tmp_path: Path, damage: str, t
         recordings([run], None, tmp_path, QUIET)
 
 
+@pytest.mark.slow
 def test_clips_that_cannot_be_used_are_said_after_the_others_were_tracked(
     clips: list[Path], tmp_path: Path
 ) -> None:
@@ -166,6 +169,7 @@ def test_what_is_no_clip_is_refused(tmp_path: Path) -> None:
         recordings([tmp_path / "calibration.json"], None, tmp_path, QUIET)
 
 
+@pytest.mark.slow
 def test_a_cache_that_cannot_be_written_is_named(clips: list[Path], tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     with pytest.raises(RunError, match=r"cannot write .*file: .*--cache"):

@@ -84,6 +84,7 @@ def joints_and_masks(posture: str, rig: Rig) -> tuple[int, int]:
     return seen, inside
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("posture", ["walk_toward", "squat_arms_forward", "free"])
 def test_joints_lie_inside_the_silhouette(posture: str) -> None:
     seen, inside = joints_and_masks(posture, RIG)
@@ -91,6 +92,7 @@ def test_joints_lie_inside_the_silhouette(posture: str) -> None:
     assert inside >= 0.95 * seen
 
 
+@pytest.mark.slow
 def test_the_silhouette_is_the_body_and_no_limb_of_the_tracker() -> None:
     """Clothes are wider than the limbs; hands and feet reach beyond wrist and ankle."""
     rig = default_rig(320, 240)
@@ -175,6 +177,7 @@ def decoded(path: Path) -> NDArray[np.uint8]:
         frames.append(frame)
 
 
+@pytest.mark.slow
 def test_a_clip_reads_back(folder: Path) -> None:
     clip = folder / "s00_t1_15_kick_left_side"
     assert sorted(path.name for path in folder.iterdir()) == [

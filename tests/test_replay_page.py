@@ -41,6 +41,7 @@ def page() -> Iterator[LivePage]:
     one.close()
 
 
+@pytest.mark.slow
 def test_each_body_is_told_with_its_outlines_and_its_joints(run: Path, page: LivePage) -> None:
     """What is told is what the run folder holds."""
     poses = open_run(run).poses

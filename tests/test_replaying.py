@@ -40,6 +40,7 @@ def run(clip: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return out / clip.name
 
 
+@pytest.mark.slow
 def test_recorded_reports_give_the_same_bodies_byte_for_byte(run: Path, tmp_path: Path) -> None:
     facts = replay_run(run, tmp_path / "again")
     before, again = open_run(run).poses, open_run(tmp_path / "again").poses

@@ -165,6 +165,7 @@ def test_a_run_of_something_else_is_refused_in_a_line_and_left_as_it_is(
     assert {path: path.read_bytes() for path in out.rglob("*") if path.is_file()} == before
 
 
+@pytest.mark.slow
 def test_a_run_that_is_over_is_not_done_again_unless_something_changed(
     clip: Path, tmp_path: Path
 ) -> None:

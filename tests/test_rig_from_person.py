@@ -39,6 +39,7 @@ from viewer.track import Setup
 CLIPS = ("r01_t1_03_walk_toward", "r04_t1_05_raise_right_lateral")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", CLIPS)
 def test_a_clip_without_a_calibration_is_calibrated_by_its_person(
     data_dir: Path, tmp_path: Path, name: str

@@ -28,6 +28,7 @@ def until_told(room: Room, now_s: float) -> str:
     return told
 
 
+@pytest.mark.slow
 def test_a_site_that_cannot_run_says_why_and_is_tried_anew(tmp_path: Path) -> None:
     settings = Settings(
         clip=str(tmp_path / "nowhere"), page=PageSettings(port=0), bus=BusSettings(endpoint="auto")

@@ -135,6 +135,7 @@ def test_soft_shadow_is_not_the_person() -> None:
     assert iou(seen.mask, body()) >= 0.95
 
 
+@pytest.mark.slow
 def test_slow_light_is_followed_and_who_stands_is_not_absorbed() -> None:
     """One side of the room grows a third brighter in 300 frames; the person stands still."""
     state = begin()
@@ -293,6 +294,7 @@ def test_whoever_was_there_before_the_lights_went_out_is_there_after(level: int)
     assert iou(seen.mask, body()) > 0.9
 
 
+@pytest.mark.slow
 def test_the_background_grows_no_brighter_in_hours_of_flicker_and_of_somebodys_shading(
     clip: Path,
 ) -> None:

@@ -51,6 +51,7 @@ def run(video: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return out / "waving"
 
 
+@pytest.mark.slow
 def test_a_run_has_all_that_the_thesis_shows(run: Path) -> None:
     """T1: background, silhouettes, poses, key frames, animation."""
     assert {path.name for path in run.iterdir()} == {
@@ -102,6 +103,7 @@ def test_one_view_of_a_clip_is_tracked_by_the_same_code(
         assert np.array_equal(one["joints_m"], other["joints_m"], equal_nan=True)
 
 
+@pytest.mark.slow
 def test_the_notes_beside_a_video_are_obeyed(video: Path, tmp_path: Path) -> None:
     """T22, T26: who is told to face away does so from that frame on."""
     path = tmp_path / "waving.avi"
@@ -140,6 +142,7 @@ def test_an_empty_picture_is_the_background_where_it_is_given(video: Path, tmp_p
     assert np.abs(found - pictures[0]).max() <= 1
 
 
+@pytest.mark.slow
 def test_the_last_line_tells_what_was_followed_how_well_and_what_to_open(
     video: Path, tmp_path: Path
 ) -> None:
@@ -154,6 +157,7 @@ def test_the_last_line_tells_what_was_followed_how_well_and_what_to_open(
     assert ", believed in 60%, mean" in line_of("waving", {**facts, "believed": 0.6})
 
 
+@pytest.mark.slow
 def test_of_a_clip_of_two_cameras_is_said_which_one_is_followed(
     clip: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -172,6 +176,7 @@ def refusal(path: Path, out: Path, capsys: pytest.CaptureFixture[str]) -> str:
     return str(caught.value)
 
 
+@pytest.mark.slow
 def test_of_several_videos_the_good_ones_are_followed_and_said(
     video: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -247,6 +252,7 @@ def test_no_animation_outlives_the_run_it_is_of(tmp_path: Path) -> None:
     }
 
 
+@pytest.mark.slow
 def test_the_effort_is_told_as_the_camera_sees_it(video: Path, clip: Path, tmp_path: Path) -> None:
     """What leans towards a camera does so whichever way the world's axes lie."""
     rig = json.loads((clip.parent / "calibration.json").read_text())

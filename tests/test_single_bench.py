@@ -10,6 +10,7 @@ from lab.bench import single_bench
 from lab.bench.single_bench import Times, figures, parts_ms
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("mode", ["default", "thesis"])
 def test_the_rate_is_what_the_parts_leave(clip: Path, mode: str) -> None:
     """T1, issue 5 (Shows 7): decoding, silhouettes and poses, one after the other."""

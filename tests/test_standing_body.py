@@ -24,6 +24,7 @@ from viewer.room.standing_body import (
 )
 
 
+@pytest.mark.slow
 def test_somebody_who_stays_is_found_whole() -> None:
     """Better than the surest landmarks alone draw them."""
     someone = person(4321)

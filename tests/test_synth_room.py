@@ -7,6 +7,7 @@ from synth.picture.random_rig import random_rig, rig_around
 from synth.picture.synth_room import _furniture, _walls, _walls_seen, furnished
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("error::RuntimeWarning")
 @pytest.mark.parametrize("seed", [2, 32])
 def test_a_room_is_lit_as_rooms_are_wherever_its_cameras_stand(seed: int) -> None:

@@ -278,6 +278,7 @@ def test_unknown_and_ill_typed_settings_are_refused(
     assert re.search(error, said.errors[0])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("how", WORKED_WITH)
 def test_what_can_be_worked_with_runs_on_with_one_line(
     tritrack: Commands, clip: Path, tmp_path: Path, how: str
@@ -295,6 +296,7 @@ def test_what_can_be_worked_with_runs_on_with_one_line(
         assert np.isfinite(found["joints_m"]).all(axis=(1, 2)).sum() > 30
 
 
+@pytest.mark.slow
 def test_a_good_clip_gives_no_warning(tritrack: Commands, clip: Path, tmp_path: Path) -> None:
     said = tritrack("track", clip, "--out", tmp_path)
     assert (said.code, said.out) == (0, "")
@@ -302,6 +304,7 @@ def test_a_good_clip_gives_no_warning(tritrack: Commands, clip: Path, tmp_path: 
     assert said.err == told
 
 
+@pytest.mark.slow
 def test_a_clip_that_is_hardly_followed_ends_with_a_code_of_its_own(
     tritrack: Commands, clip: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -315,6 +318,7 @@ def test_a_clip_that_is_hardly_followed_ends_with_a_code_of_its_own(
     assert summary["status"]["lost"] > summary["status"]["predicted"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("command", "spoil", "short"),
     [
@@ -360,6 +364,7 @@ def test_a_clip_that_shows_nobody_is_not_followed_and_is_written(
     assert (tmp_path / "out" / "clip" / "poses.npz").is_file()
 
 
+@pytest.mark.slow
 def test_json_stands_alone_on_stdout(tritrack: Commands, clip: Path, tmp_path: Path) -> None:
     folder = copied(clip, tmp_path / "clip")
     WORKED_WITH["no calibration"][0](folder)
@@ -369,6 +374,7 @@ def test_json_stands_alone_on_stdout(tritrack: Commands, clip: Path, tmp_path: P
     assert len(said.warnings) == len(told["warnings"]) == 1
 
 
+@pytest.mark.slow
 def test_a_pattern_may_catch_calibration_json_too(
     tritrack: Commands, clip: Path, tmp_path: Path
 ) -> None:
@@ -389,6 +395,7 @@ def test_two_runs_never_share_a_folder(tritrack: Commands, clip: Path, tmp_path:
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.slow
 def test_a_bad_clip_does_not_keep_the_others_from_it(
     tritrack: Commands, clip: Path, tmp_path: Path
 ) -> None:
@@ -399,6 +406,7 @@ def test_a_bad_clip_does_not_keep_the_others_from_it(
     assert (tmp_path / "out" / clip.name / "poses.npz").is_file()
 
 
+@pytest.mark.slow
 def test_settings_hold_unless_the_command_line_says_otherwise(
     tritrack: Commands, clip: Path, tmp_path: Path
 ) -> None:
@@ -416,6 +424,7 @@ def test_settings_hold_unless_the_command_line_says_otherwise(
     assert "size must look like 160x120, got 'banana'" in said.errors[0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("view", [1, 2])
 def test_one_view_is_enough(tritrack: Commands, clip: Path, tmp_path: Path, view: int) -> None:
     """A run with one viewer; rows are counted by its own frames."""
@@ -507,6 +516,7 @@ def test_a_live_run_takes_the_place_of_the_last_one_of_the_same_or_by_force(
     assert (told is not None) == (words == ())
 
 
+@pytest.mark.slow
 def test_what_is_replayed_says_where_it_is_written(
     tritrack: Commands, clip: Path, tmp_path: Path
 ) -> None:

@@ -74,6 +74,7 @@ def fused(seen: Rays, proposed_m: np.ndarray, instants: int = 1) -> Fused:
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("views", [1, 2, 3])
 def test_a_view_that_shows_nothing_changes_nothing(views: int) -> None:
     """So the fusion of two views is that of three of which one sees no person."""

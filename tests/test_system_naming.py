@@ -75,6 +75,7 @@ def mirrored(clip: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.mark.slow
 def test_the_posture_is_named_of_a_person_that_no_model_was_trained_on(clip: Path) -> None:
     """P58: the demo's own answer."""
     assert named(clip) == "raise_right_lateral"
@@ -107,11 +108,13 @@ def test_what_ends_with_the_clip_is_told_when_the_recognizer_ends(clip: Path) ->
     assert (last.frame, last.captured_s) == (-1, bodies[-1].captured_s)
 
 
+@pytest.mark.slow
 def test_a_mirror_changes_the_answer(mirrored: Path) -> None:
     """The name comes from the pictures: it is not known beforehand."""
     assert named(mirrored) == "raise_left_lateral"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("gap_s", "goes_on"), [(0.9, True), (30.0, False)])
 def test_what_comes_after_a_gap_in_time_is_another_motion(
     clip: Path, gap_s: float, goes_on: bool
@@ -128,6 +131,7 @@ def test_what_comes_after_a_gap_in_time_is_another_motion(
     assert (first.segment[0] < first.frame) == goes_on
 
 
+@pytest.mark.slow
 def test_a_camera_of_60_frames_a_second_shows_no_slow_motion(clip: Path) -> None:
     """P1: models count their own frames, 15 a second."""
     bodies = tracked(clip)

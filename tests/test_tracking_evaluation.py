@@ -71,6 +71,7 @@ class Page(HTMLParser):
         self.texts.append(data.strip())
 
 
+@pytest.mark.slow
 def test_the_report_says_what_run_and_truth_say(clip: Path, runs: Path, written: Path) -> None:
     report = report_of(written)
     with np.load(runs / clip.name / "poses.npz") as poses, np.load(clip / "truth.npz") as truth:

@@ -5,6 +5,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+import pytest
 from posing import posed
 from rolling import ROLLED, on_one_leg, outlines, person_in
 
@@ -107,6 +108,7 @@ def test_outlines_without_a_common_place_are_left_alone() -> None:
     assert visual_hull.cleaned(ROLLED, alone) == (alone, False)
 
 
+@pytest.mark.slow
 def test_a_rehearsal_compiles_what_a_doubtful_pose_needs() -> None:
     """In a process of its own: nothing is left to compile in the middle of a live run."""
     rehearsal = subprocess.run(
