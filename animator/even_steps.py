@@ -12,15 +12,15 @@ from common.body.body import Vector
 MOST_FRAMES: Final = 1_000_000
 """Longer files are a mistake in the times: a gap that is filled has no end."""
 WHOLE: Final = 0.4
-"""Steps of rows that are so near to whole ones, in frames, make the rate."""
+"""Steps at most this far from a whole number of frames count for the rate."""
 TREMBLES: Final = 0.25
-"""Rows so near to whole frames, in frames, are taken for them: clocks tremble, and of many cameras
-say whole milliseconds."""
+"""Rows at most this far from whole frames, in frames, are taken for them: clocks jitter, and many
+cameras round to milliseconds."""
 AROUND: Final = 9
 """Number of steps from whose median the rate of a stretch is taken."""
 FASTEST: Final = 10
-"""Where the rate varies, the file's step is this percentile of those of all stretches: of the
-fastest ones no row is passed over."""
+"""Where the rate varies, the file's step is this percentile of those of all stretches: low,
+so that no row of the fastest stretches is skipped."""
 USUAL: Final = 1.5
 """Rows that are farther apart, in usual steps, have lost one between them."""
 
@@ -90,7 +90,8 @@ def _laid(time_s: Vector, posed: NDArray[np.intp]) -> tuple[float, Vector]:
 def _usual_step_s(steps_s: Vector) -> float:
     """Of a frame: the mean over all rows that are one or two apart.
 
-    Their median alone drifts by frames: of times in whole milliseconds it is one itself.
+    The median alone would be frames off in the end: of times in whole milliseconds it is a whole
+    millisecond too.
     """
     apart = steps_s / np.percentile(steps_s, 50, method="lower")
     frames = np.rint(apart)

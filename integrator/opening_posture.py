@@ -15,8 +15,8 @@ from integrator.prior_body import prior
 from integrator.rig.body_position import scales_at, sees_flank, upright_place_of
 
 LEG_KEPT: Final = (0.85, 1.05)
-"""Share of the measured leg that the height of the navel above the floor may leave; beyond, the
-floor is not where the calibration says."""
+"""Legs from the navel to the floor are believed where they are this share of the measured ones;
+else the floor of the calibration is wrong."""
 
 
 class Sample(NamedTuple):
@@ -42,7 +42,7 @@ class Opening(NamedTuple):
     measures: tuple[tuple[Measure, Measure], ...] = ()
     """What the accepted frames showed, in pixels of both views."""
     samples: tuple[Sample, ...] = ()
-    """The instants whose outlines the prior was fitted to, where it was."""
+    """The instants to whose silhouettes the prior was fitted; empty where it was not."""
     unsampled: int = 0
     """Frames since the last of them."""
 
@@ -65,7 +65,7 @@ def step(
 ) -> tuple[Opening, Vector | None]:
     """One instant more; the navel's place where it is now settled, else None.
 
-    A posture that is broken off for as many frames as it is due begins afresh.
+    After `due` frames without the posture, measuring begins anew.
 
     Args:
         opening: What is known so far.
@@ -91,7 +91,7 @@ def step(
 
 
 def elsewhere(opening: Opening, rig: Rig, due: int, method: Method, stature_m: float) -> Opening:
-    """What is known of the body, by a rig that is known only now.
+    """The body, worked out again by a new rig.
 
     Args:
         opening: By the rig before. A body that was known before the run is kept.

@@ -104,7 +104,9 @@ def begin(own: Platform, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Ite
     """Starts a child of such a text; all are closed in the end."""
     children = []
     monkeypatch.syspath_prepend(str(tmp_path))
-    monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(tmp_path), os.environ["PYTHONPATH"]]))
+    monkeypatch.setenv(
+        "PYTHONPATH", os.pathsep.join([str(tmp_path), os.environ.get("PYTHONPATH", "")])
+    )
 
     def begun(text: str, stall_s: float = 20.0, **more: Any) -> Child:
         (tmp_path / "spoken.py").write_text(text)
@@ -277,7 +279,9 @@ def test_that_a_worker_was_killed_is_noticed(own: Platform, tmp_path: Path) -> N
 def test_what_was_started_ends_with_who_started_it(
     own: Platform, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, kind: str
 ) -> None:
-    monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(tmp_path), os.environ["PYTHONPATH"]]))
+    monkeypatch.setenv(
+        "PYTHONPATH", os.pathsep.join([str(tmp_path), os.environ.get("PYTHONPATH", "")])
+    )
     (tmp_path / "spoken.py").write_text(
         main_of("asker.answers.write(b'.'); asker.answers.flush()", "time.sleep(600)")
     )

@@ -48,7 +48,7 @@ def made_clip(folder: Path) -> Path:
 
 
 def refuse_other_than_demo(out: Path) -> None:
-    """See that no run but that of a demo, whose clip is made anew each time, is lost.
+    """Refuse to write over any run but a demo's, which can be made again.
 
     Raises:
         OtherRun: When one would be.

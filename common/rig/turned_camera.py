@@ -15,7 +15,7 @@ def turn_of(shift: Shift, focal_px: Vector) -> Vector:
     """The turn (3, 3) of what a camera sees, in its own axes, that shifts its picture so.
 
     Args:
-        shift: Of the picture's middle, and about it.
+        shift: How far the picture's middle moves, and how far the picture rolls about it.
         focal_px: (2,) across and down.
     """
     ahead = np.array([shift.right_px / focal_px[0], shift.down_px / focal_px[1], 1.0])

@@ -28,7 +28,7 @@ from common.video.pictures import Image, Source, cure, named
 from common.video.reduction import reduced
 
 SIGN_OF_LIFE: Final = 100
-"""Of so many frames that are passed over the asker hears: grabbing many takes a while."""
+"""While frames are passed over, the asker hears every so many that the work goes on."""
 
 
 PROGRESSIVE: Final = "make it progressive (ffmpeg -i IN -vf yadif -c:v mjpeg -q:v 2 OUT.avi)"
@@ -96,7 +96,7 @@ def serve(request: dict[str, Any], answers: Answers, complaints: Complaints) -> 
         elif grab.index % SIGN_OF_LIFE == 0:
             say(answers, SKIPPED, grab)
             answers.flush()
-    damaged += bool(complaints.taken())  # that its end is missing is met by no frame
+    damaged += bool(complaints.taken())  # a missing end is complained of after the last frame
     say(answers, END, Grabbed(came, time.monotonic(), None), DAMAGED.pack(damaged))
 
 
@@ -136,11 +136,12 @@ def opened(source: Source, every: int, start: int, complaints: Complaints) -> Op
 def judged(taken: Iterator[Grabbed], source: str, complaints: Complaints) -> Iterator[Grabbed]:
     """The frames of a file, and in which of them the decoder met damage.
 
-    What is said up to the first of them is none: a video that was trimmed may begin in a stream's
-    middle.
+    Complaints up to the first frame do not count as damage: a video that was trimmed may begin in
+    the middle of a stream.
 
     Raises:
-        Refused: When a frame is interlaced: OpenCV's FFmpeg gives no picture, and calls it one.
+        Refused: When a frame is interlaced: OpenCV reports success but fills in no
+            picture.
     """
     for grab in taken:
         said = complaints.taken()

@@ -48,7 +48,7 @@ def silhouettes_of(rig: Rig, seen: tuple[Observation, Observation]) -> Silhouett
 
 
 def poorest(pose: Vector, body: Vector, rig: Rig, seen: Seen) -> float:
-    """S of a pose in that of both views where it is lower; 1 where one of them shows nobody."""
+    """The lower of both views' S of a pose; 1 where a view shows no person."""
     first, second = seen
     if first is None or second is None:
         return 1.0

@@ -1,4 +1,4 @@
-"""Whether a proposal has front for back: outlines hardly tell, faces and feet do."""
+"""Whether a proposal has front for back: silhouettes hardly show it, faces and feet do."""
 
 import math
 from typing import Final
@@ -11,34 +11,34 @@ from integrator.landmarks.landmark_rays import Rays
 from integrator.proposal import pose_network
 
 WIDE_DEG: Final = 30.0
-"""Standard deviation of the facing that a view tells."""
+"""Standard deviation of the facing that a view reports, degrees."""
 SHARPER: Final = 3.0
 """Factor on the logit of a view's confidence that it did not take front for back (a profile stays
 the same profile then). Of poses whose views are .5 to .6, .6 to .7, .7 to .8 and .8 to 1 sure, 37,
 15, 8 and .1 % are reversed: two performers and synthetic people (docs/measurements.md)."""
 UNTOLD: Final = 0.15
-"""How often one that does not tell it does."""
+"""Probability that a view without a facing took front for back."""
 UNIFORM_FLOOR: Final = 0.005
-"""How often it tells any other facing."""
+"""Density of any other facing, as a share of the peak."""
 RARELY: Final = 0.01
-"""How often proposals are turned about ..."""
+"""Prior probability that a proposal has front for back."""
 ANEW: Final = 0.1
-"""... and how often it is decided anew whether they are."""
+"""Probability that this is drawn anew from the prior at the next instant."""
 TRUST: Final = 0.6
-"""How much of what an instant says is believed: the next says nearly the same."""
+"""Exponent of an instant's likelihood: consecutive instants are correlated."""
 FLIP_THRESHOLD: Final = 0.7
-"""A proposal is turned where that is so probable, and turned no more where it is as improbable."""
+"""Probability at which a proposal is flipped; below 1 less this it is flipped no longer."""
 
 
 def step(
     before: tuple[float, bool] | None, joints_m: NDArray[np.float64], rays: Rays
 ) -> tuple[float, bool]:
-    """How probably the proposal of an instant is turned about, and whether it is taken for it.
+    """The probability that an instant's proposal has front for back, and whether it is flipped.
 
     Args:
-        before: Of the instant before; None at the first.
+        before: The same of the instant before; None at the first.
         joints_m: (12, 3) world, as proposed.
-        rays: Their facings.
+        rays: Of the views; their facings count.
     """
     was, turned = (RARELY, False) if before is None else before
     now = (1.0 - ANEW) * was + ANEW * RARELY

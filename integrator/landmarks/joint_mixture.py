@@ -1,4 +1,4 @@
-"""Where a joint most probably is, of what the outlines propose and what each view shows."""
+"""The most probable place of a joint, by the silhouettes' proposal and each view's landmarks."""
 
 import math
 from typing import Final, NamedTuple
@@ -11,80 +11,81 @@ from common.compiled import compiled
 
 
 class Spread(NamedTuple):
-    """How far from the truth one kind of witness is.
+    """How far from the truth one kind of evidence is: a mixture of three parts.
 
-    It is right, roughly right, or speaks of something else, which may be anywhere: then it says
-    nothing, and does not pull.
+    It is right, roughly right, or of something else, which may be anywhere: that part is uniform,
+    and does not pull.
     """
 
     right: float
-    """Standard deviation of what is right, by one that is wholly sure ..."""
+    """Standard deviation of the part that is right, at confidence 1."""
     unsure: float
-    """... and how much it grows to one that is not sure at all."""
+    """Growth of that standard deviation from confidence 1 to confidence 0."""
     roughly: float
-    """Of what is roughly right."""
+    """Standard deviation of the part that is roughly right."""
     often: float
-    """How often what is not right is roughly right; less often of a proposal that is doubted."""
+    """Share of what is not right that is roughly right; a doubted proposal has less of it."""
     far: float
-    """What is neither is anywhere within so many standard deviations of what is roughly right."""
+    """Half width of the uniform part, in standard deviations of the roughly right part."""
 
     def right_of(self, confidence: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Standard deviation of what is right, by how sure its witness is."""
+        """Standard deviation of the right part, by the confidence of its evidence."""
         return self.right + self.unsure * (1.0 - confidence)
 
 
 PROPOSED: Final = Spread(right=0.014, unsure=0.061, roughly=0.09, often=0.95, far=8)
-"""Of joints that outlines propose, metres."""
+"""Spread of joints that silhouettes propose, metres."""
 SHOWN: Final = Spread(right=0.012, unsure=0.035, roughly=0.051, often=0.55, far=2)
 """Spread of landmarks beside their ray, statures. It and the spreads above were chosen on two
 performers and synthetic people (docs/measurements.md)."""
 OUTLIER_PENALTY: Final = 4.5
-"""So far the log probability of what is neither is lowered, while nothing is doubted."""
+"""Penalty of the uniform part's log probability, while nothing is doubted."""
 LEAST, MOST = 0.01, 0.98
-"""Nobody is believed more or less surely."""
+"""Limits of the probability that any evidence is right."""
 ROUNDS: Final = 4
+"""Rounds of weighted least squares from each start."""
 SECOND: Final = 0.02
-"""Less probably nobody is where a view may see a joint too."""
+"""Second places of less confidence are left out."""
 HELD: Final = 4.0
-"""1 / m^2: so tightly a proposed joint is held where nothing else speaks."""
+"""Precision of a proposed joint where no evidence holds it, 1 / m^2."""
 NONE, BOTH = -1, 2
-"""Of rays: no ray of a view, and how many a view has."""
+"""Index that stands for no ray of a view, and the number of rays of a view."""
 
 
 class Evidence(NamedTuple):
-    """What is said of one joint."""
+    """The evidence on one joint."""
 
     proposed_m: Vector
-    """(3,)"""
+    """(3,) the proposed joint."""
     inlier_probability: float
-    """How probably the proposed joint is right."""
+    """Probability that the proposed joint is right."""
     centres_m: Floats
     """(V, 3) the cameras."""
     directions: Floats
-    """(V, BOTH, 3) of its rays: of each view where it shows the joint, and where else it may."""
+    """(V, BOTH, 3) unit directions of each view's rays: first place, then second place."""
     inliers: Floats
-    """(V, BOTH) how probably each landmark is right; 0: there is none."""
+    """(V, BOTH) probability that each ray is right; 0: there is none."""
     spreads_m: Vector
-    """(1 + V,) of the proposed joint and of each view's landmark, where they are right."""
+    """(1 + V,) standard deviations of the proposed joint and of each view's landmark, if right."""
     roughly_m: float
-    """Of the proposed joint, where it is roughly right."""
+    """Standard deviation of the proposed joint, if roughly right."""
     often: float
-    """How often it is roughly right, where it is not right."""
+    """Probability that it is roughly right, if it is not right."""
     stature_m: float
 
 
 @compiled
 def most_probable(told: Evidence, place_m: Vector, precision: Vector) -> float:
-    """The log probability of the place of one joint where it is highest.
+    """The highest log probability of the place of one joint.
 
-    From where each witness alone would have it, and from where the rays of two views meet, rounds
-    of weighted least squares (the EM algorithm of Dempster 1977) climb to the next peak; the
-    highest counts.
+    Rounds of weighted least squares (the EM algorithm of Dempster 1977) climb to a peak from the
+    proposal, from the point of each ray that is nearest to it, and from where the rays of two views
+    meet. The highest peak counts.
 
     Args:
-        told: Evidence.
-        place_m: (3,) gets the place.
-        precision: (6,) gets xx, xy, xz, yy, yz, zz of its inverse covariance, 1 / m^2.
+        told: The evidence.
+        place_m: (3,) is set to the place.
+        precision: (6,) is set to xx, xy, xz, yy, yz, zz of its inverse covariance, 1 / m^2.
     """
     best = -np.inf
     normal, right, here = np.zeros(6), np.zeros(3), np.zeros(3)
@@ -105,8 +106,10 @@ def most_probable(told: Evidence, place_m: Vector, precision: Vector) -> float:
 
 @compiled
 def _next(taken: NDArray[np.int64]) -> bool:
-    """The next choice of rays, (V,) of NONE or a ray: at most two views give one; whether there
-    is another. The last view's changes first."""
+    """Set the next choice of rays, (V,) of NONE or a ray of at most two views; False at the end.
+
+    The last view's ray changes first.
+    """
     while True:
         view = len(taken) - 1
         while view >= 0 and taken[view] == BOTH - 1:
@@ -121,7 +124,7 @@ def _next(taken: NDArray[np.int64]) -> bool:
 
 @compiled
 def _start(told: Evidence, taken: NDArray[np.int64], here: Vector) -> bool:
-    """Where to climb from, by the rays that are taken; whether there is such a place."""
+    """Set the start for the rays that are taken; False where there is none."""
     here[:] = told.proposed_m
     one = other = NONE
     for view in range(len(taken)):
@@ -143,7 +146,7 @@ def _start(told: Evidence, taken: NDArray[np.int64], here: Vector) -> bool:
 
 @compiled
 def _drop(centre_m: Vector, direction: Vector, here: Vector) -> None:
-    """Move a place to where a ray is nearest to it."""
+    """Move a place to the nearest point of a ray."""
     along = 0.0
     for i in range(3):
         along += (here[i] - centre_m[i]) * direction[i]
@@ -153,7 +156,7 @@ def _drop(centre_m: Vector, direction: Vector, here: Vector) -> None:
 
 @compiled
 def _meet(centre_m: Vector, one: Vector, other_m: Vector, two: Vector, here: Vector) -> bool:
-    """The middle between two rays where they are nearest; whether there is one."""
+    """Set the middle of the shortest line between two rays; False where they are parallel."""
     cosine = first = second = 0.0
     for i in range(3):
         apart = centre_m[i] - other_m[i]
@@ -172,7 +175,7 @@ def _meet(centre_m: Vector, one: Vector, other_m: Vector, two: Vector, here: Vec
 
 @compiled
 def _weigh(told: Evidence, here: Vector, normal: Vector, right: Vector) -> float:
-    """The log probability of a place, and the normal equations by which it is bettered."""
+    """The log probability of a place, and the normal equations of the next, better place."""
     square = 0.0
     for i in range(3):
         square += (here[i] - told.proposed_m[i]) ** 2
@@ -195,9 +198,9 @@ def _weigh(told: Evidence, here: Vector, normal: Vector, right: Vector) -> float
 
 @compiled
 def _look(told: Evidence, view: int, here: Vector, normal: Vector, right: Vector) -> float:
-    """The log probability by what one view shows; the normal equations get its share of them.
+    """The log probability by one view's rays, whose terms are added to the normal equations.
 
-    It shows the joint at its first place or at its second: whichever is nearer pulls.
+    Each ray pulls by the probability that the joint is on it.
     """
     first, second = told.directions[view]
     inlier_probability, other = told.inliers[view]
@@ -221,7 +224,7 @@ def _look(told: Evidence, view: int, here: Vector, normal: Vector, right: Vector
 
 @compiled
 def _beside(centre_m: Vector, along: Vector, here: Vector) -> float:
-    """How far a place is beside a ray, squared."""
+    """Squared distance of a place from a ray."""
     x, y, z = here[0] - centre_m[0], here[1] - centre_m[1], here[2] - centre_m[2]
     deep = x * along[0] + y * along[1] + z * along[2]
     return max(0.0, x * x + y * y + z * z - deep * deep)
@@ -229,7 +232,7 @@ def _beside(centre_m: Vector, along: Vector, here: Vector) -> float:
 
 @compiled
 def _pull(centre_m: Vector, along: Vector, weight: float, normal: Vector, right: Vector) -> None:
-    """What a ray adds to the normal equations."""
+    """Add a ray's terms to the normal equations."""
     at = centre_m[0] * along[0] + centre_m[1] * along[1] + centre_m[2] * along[2]
     k = 0
     for i in range(3):
@@ -241,20 +244,20 @@ def _pull(centre_m: Vector, along: Vector, weight: float, normal: Vector, right:
 
 @compiled
 def _bell(square: float, spread_m: float, often: float, axes: int) -> float:
-    """How probably somebody who is so often of this kind is so far off (squared, m^2)."""
+    """A normal density of so many axes at a squared distance (m^2), times its part's weight."""
     return often * math.exp(-square / (2 * spread_m * spread_m)) / spread_m**axes
 
 
 @compiled
 def _anywhere(roughly_m: float, unlikely: float, often: float, kind: Spread, axes: int) -> float:
-    """How probably somebody who is neither right nor, so often, roughly right says so."""
+    """Density of the uniform part: neither right nor roughly right."""
     beyond = unlikely * (1.0 - often) / (kind.far * roughly_m) ** axes
     return beyond * math.exp(-OUTLIER_PENALTY * often / kind.often) + 1e-30
 
 
 @compiled
 def _solve(normal: Vector, right: Vector, place: Vector) -> None:
-    """The place of symmetric normal equations (xx, xy, xz, yy, yz, zz)."""
+    """Set the place that solves symmetric normal equations (xx, xy, xz, yy, yz, zz)."""
     a, b, c, d, e, f = normal[0], normal[1], normal[2], normal[3], normal[4], normal[5]
     m00, m01, m02 = d * f - e * e, c * e - b * f, b * e - c * d
     m11, m12, m22 = a * f - c * c, b * c - a * e, a * d - b * b

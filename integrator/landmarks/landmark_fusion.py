@@ -1,4 +1,4 @@
-"""One body of what the outlines propose and what each view's picture shows of the joints."""
+"""The joints of an instant, fused of the silhouettes' proposal and all views' landmarks."""
 
 from typing import Final, NamedTuple, TypeVar
 
@@ -32,12 +32,13 @@ from integrator.proposal.network_weights import JOINTS
 from integrator.proposal.pose_network import OTHER_SIDES
 
 ARMS, LEGS = slice(0, 6), slice(6, 12)
-"""Of JOINTS."""
+"""Places of the arms and the legs in JOINTS."""
 PROPOSED_RIGHT: Final = (0.18, 0.9)
-"""Confidence in a proposed joint at which it is never, and always, taken for right."""
+"""Confidence in a proposed joint at which it is taken for right with probability 0 and 1."""
 SHOWN_RIGHT: Final = (0.02, 0.91)
-"""Confidence in a landmark at which it is never, and always, taken for right."""
+"""Confidence in a landmark at which it is taken for right with probability 0 and 1."""
 FIRM_M: Final = 0.02
+"""Standard deviation to which the confidence of a fused joint is related, metres."""
 PLATT: Final = (2.15, 4.25)
 """Platt scaling of a fused joint's confidence: the logit at a standard deviation of FIRM_M, and its
 fall as that grows e-fold. Fitted to joints less than 50 mm off (docs/measurements.md)."""
@@ -49,29 +50,29 @@ class Memory(NamedTuple):
     """What is remembered between instants."""
 
     turned: tuple[float, bool]
-    """How probably proposals are turned about, and whether they are taken for it."""
+    """Probability that proposals have front for back, and whether they are flipped."""
     exchanges: Exchanges
     exchanged: Exchanged
-    """What was decided of them."""
+    """The decision on them."""
     lengths_m: Vector
     """(10,) of `limb_springs.ENDS`."""
     misfit: Misfit
-    """How far proposals were beside the rays."""
+    """Distance of recent proposals from the rays."""
     displaced: Vector
-    """(4,) how far proposals stood beside them as a whole."""
+    """(4,) offset of recent proposals from the rays, as a whole."""
 
 
 class Proposal(NamedTuple):
-    """The joints that outlines propose, and how far to believe them."""
+    """The joints that silhouettes propose, and how far to believe them."""
 
     joints_m: NDArray[np.float64]
     """(12, 3) world."""
     confidence: Vector
-    """(12,) how probably each is less than 50 mm off."""
+    """(12,) probability that each is less than 50 mm off."""
     wider_m: Vector
-    """(12,) by how much their spreads grow."""
+    """(12,) growth of their standard deviations, metres."""
     often: float
-    """How often they are roughly right, where they are not right."""
+    """Probability that one is roughly right, if it is not right."""
 
 
 class Fused(NamedTuple):
@@ -92,17 +93,17 @@ def step(
     rays: Rays,
     stature_m: float,
 ) -> Fused:
-    """One instant: each joint where the proposal and all views together most probably have it.
+    """One instant: each joint at its most probable place by the proposal and all views.
 
-    Where faces say that the proposal is turned about, its sides are exchanged. Where proposals have
-    lately been off what is shown, they are believed less closely and less surely; where they have
-    been so as a whole, they are moved. Which sides a view exchanged is decided for arms and legs as
-    wholes, by all that is said of their joints; then limbs are given their lengths.
+    A proposal with front for back, by the views' facings, has its sides exchanged. Proposals that
+    were lately off the rays get a wider spread and less confidence; an offset that all their joints
+    share is taken back. Whether a view exchanged left and right is decided for the arms as a whole
+    and for the legs as a whole. Then limbs are drawn to their lengths.
 
     Args:
-        before: Of the instant before; None at the first.
+        before: The memory of the instant before; None at the first.
         proposed_m: (12, 3) world, of JOINTS.
-        confidence: (12,) how probably each is less than 50 mm off.
+        confidence: (12,) probability that each is less than 50 mm off.
         rays: Of the views' landmarks.
         stature_m: Of the person.
     """
@@ -201,12 +202,12 @@ def _weighed(
 
 
 def _shown(rays: Rays) -> NDArray[np.float64]:
-    """(V, 12) how probably each landmark is right; 0: there is none."""
+    """(V, 12) probability that each landmark is right; 0: there is none."""
     return np.where(rays.confidence > 0.0, _share(rays.confidence, SHOWN_RIGHT), 0.0)
 
 
 def _confidence(precisions: NDArray[np.float64]) -> Vector:
-    """How probably joints are less than 50 mm off, of how tightly they are held, (12, 6)."""
+    """Probability that joints are less than 50 mm off, by their precisions (12, 6)."""
     spreads_m = np.sqrt(3.0 / precisions[:, _DIAGONAL].sum(axis=1))
     certain, steep = PLATT
     found: Vector = 1.0 / (1.0 + np.exp(-certain) * (spreads_m / FIRM_M) ** steep)
@@ -214,7 +215,7 @@ def _confidence(precisions: NDArray[np.float64]) -> Vector:
 
 
 def _doubted(probability: Probability, doubt: float) -> Probability:
-    """A probability, or some, by odds that are so many times lower."""
+    """A probability, or some, whose odds are divided by `doubt`."""
     return probability / (probability + doubt * (1.0 - probability))
 
 
@@ -225,7 +226,7 @@ def _share(confidence: Vector, between: tuple[float, float]) -> Vector:
 
 
 def _aside(joints_m: NDArray[np.float64], centres_m: NDArray[np.float64]) -> tuple[float, ...]:
-    """How far each camera sees a profile, in [0, 1]."""
+    """How much each camera sees a profile: 0 front or back, 1 profile."""
     lefts, rights = joints_m[0::2], joints_m[1::2]
     girdles = [pose_network.SHOULDERS.start // 2, pose_network.HIPS.start // 2]
     across = (lefts - rights)[girdles].sum(axis=0)
@@ -236,7 +237,7 @@ def _aside(joints_m: NDArray[np.float64], centres_m: NDArray[np.float64]) -> tup
 
 
 def _confused(rays: Rays) -> tuple[float, ...]:
-    """How probably each view took front for back."""
+    """Probability that each view took front for back."""
     return tuple(front_back_flip.confused(sure) for sure in rays.facing_confidence)
 
 

@@ -1,4 +1,4 @@
-"""Whether a view took left for right: of the arms, of the legs, or of both."""
+"""Whether a view exchanged left and right: of the arms, of the legs, or of both."""
 
 from typing import Any, Final, NamedTuple
 
@@ -7,30 +7,32 @@ import numpy as np
 from common.body.body import Vector
 
 PART: Final = 0.005
-"""How often a view has arms or legs alone exchanged, of somebody who faces it ..."""
+"""Prior probability that a view exchanges the arms alone, or the legs alone, of a person whom it
+sees from the front or the back."""
 PART_ASIDE: Final = 0.08
-"""... and of somebody whom it sees in profile, where the limbs of both sides overlap: there arms
-are in 3 to 9 % of made-up people's and legs in 9 to 14 ..."""
+"""The same of a person seen in profile, where the limbs of both sides overlap: of synthetic
+people's profiles 3 to 9 % have the arms exchanged, 9 to 14 % the legs."""
 BOTH_ASIDE: Final = 0.05
-"""... and so often both; of a front, as often as front is taken for back."""
+"""Prior probability that both are exchanged in a profile; in a front view it is the probability
+that front was taken for back."""
 ANEW: Final = 0.33
-"""How often what was so at one instant is decided anew at the next."""
+"""Probability that a view's exchange is drawn anew from the prior at the next instant."""
 TRUST: Final = 0.67
-"""How much of what an instant says is believed: its joints go wrong together."""
+"""Exponent of an instant's likelihood: the errors of its joints are correlated."""
 
 JOINTLY: Final = 3
-"""Views of which all exchanges are weighed together; of more, those of each by themselves."""
+"""Number of views up to which all exchanges are weighed jointly; with more, each view's alone."""
 
 Exchanges = Vector
-"""How probably arms are exchanged by each view, and legs likewise: (2,) * 2V, all views' arms
-before all views' legs, of up to JOINTLY views; (V, 2, 2) of more."""
+"""Posterior of the exchanges: (2,) * 2V for up to JOINTLY views, all views' arms before all views'
+legs; (V, 2, 2) for more, by view, arms, legs."""
 
 
 class Exchanged(NamedTuple):
-    """Which views took left for right."""
+    """Which views exchanged left and right."""
 
     arms: tuple[int, ...]
-    """By each view; 1: it did."""
+    """One number a view; 1: exchanged."""
     legs: tuple[int, ...]
 
 
@@ -41,14 +43,14 @@ def step(
     aside: tuple[float, ...],
     confused: tuple[float, ...],
 ) -> tuple[Exchanges, Exchanged]:
-    """One instant of a hidden Markov model whose 4^V states are all that may be exchanged.
+    """One instant of a hidden Markov model whose 4^V states are all possible exchanges.
 
     Args:
-        before: At the instant before; None at the first.
-        arms: (2,) * V log probability of all the arms' joints, exchanged by each view.
-        legs: (2,) * V of the legs'.
-        aside: Of each view, from 0 (it sees front or back) to 1 (a profile).
-        confused: Of each view, how probably it took front for back.
+        before: Posterior of the instant before; None at the first.
+        arms: (2,) * V log likelihood of the arms' joints, by which views exchanged them.
+        legs: (2,) * V log likelihood of the legs' joints.
+        aside: How much each view sees a profile: 0 front or back, 1 profile.
+        confused: Probability that each view took front for back.
     """
     views = len(aside)
     expected: Any = 1.0 if before is None else before
@@ -94,13 +96,13 @@ def _each(views: tuple[float, ...]) -> list[tuple[float, ...]]:
 
 
 def _drawn_anew(known: Exchanges, usual: Vector, view: tuple[int, int]) -> Exchanges:
-    """What is expected next where now and then the axes of one view are drawn from the usual."""
+    """The prediction of the next instant, in which one view's axes may be drawn anew."""
     found: Exchanges = (1 - ANEW) * known + ANEW * usual * known.sum(axis=view, keepdims=True)
     return found
 
 
 def _usual(aside: float, confused: float) -> Vector:
-    """(2, 2) how often one view exchanges arms (rows) and legs (columns)."""
+    """(2, 2) prior of one view: arms exchanged (rows), legs exchanged (columns)."""
     part = PART + (PART_ASIDE - PART) * aside
     both = confused + (BOTH_ASIDE - confused) * aside
     return np.array([[1.0 - both - 2.0 * part, part], [part, both]])

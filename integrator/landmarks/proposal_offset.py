@@ -1,7 +1,7 @@
-"""A proposal that stands beside what the views show of its joints, as a whole, is moved there.
+"""The offset that all joints of a proposal share against the views' rays, and its correction.
 
-An outline that has an edge of a curtain, or lacks a side, displaces or turns all that it proposes,
-and the network is as sure of it as ever. Landmarks are off one by one; together they hardly are.
+A silhouette with the edge of a curtain, or without one side of the body, moves or turns the whole
+proposal, while the network's confidence stays. Errors of landmarks are not shared by all joints.
 """
 
 import math
@@ -19,14 +19,15 @@ USUAL: Final = np.array([0.015, 0.015, 0.015, math.radians(3.0)])
 performers' instants are offset by no more than 1.5 times that and turned by no more than about
 twice that (docs/measurements.md)."""
 SURELY: Final = 1.5
-"""So many times as far, a proposal is believed; of what is beyond it is moved back."""
+"""Offset up to which a proposal is left as it is, in units of USUAL; the rest is taken back."""
 EMA_WEIGHT: Final = 0.3
-"""Share of an instant in how far proposals have been displaced lately."""
+"""Weight of an instant in the running mean of the offsets."""
 OUTLYING: Final = 4.0
-"""Spreads of a landmark at which it counts half: it may well speak of something else."""
+"""Residual at which a landmark counts half, in its standard deviations: it may be an outlier."""
 ROUNDS: Final = 3
+"""Rounds of weighted least squares."""
 LOOSELY: Final = np.diag([10.0, 10.0, 10.0, 4.0])
-"""1 / m^2 and 1 / radian^2: so tightly nothing is held to stay, where rays tell nothing."""
+"""Precision of an offset of zero, 1 / m^2 and 1 / radian^2, for what the rays do not fix."""
 
 
 def step(
@@ -36,7 +37,7 @@ def step(
     rays: Rays,
     stature_m: float,
 ) -> tuple[Vector, NDArray[np.float64]]:
-    """How far proposals have been displaced lately, and the proposal of an instant moved back.
+    """The running mean of the offsets, and the proposal of an instant with it taken back.
 
     Args:
         before: (4,) up to the instant before: to the rays by x, y and z in metres, and about the

@@ -1,4 +1,4 @@
-"""How far proposals have lately been off what the pictures show, and so how far to believe them."""
+"""Residuals of recent proposals against the landmarks' rays, and the doubt that follows."""
 
 import math
 from typing import Final, NamedTuple
@@ -30,21 +30,21 @@ EMA_WEIGHT: Final = 0.2
 
 
 class Misfit(NamedTuple):
-    """How far proposals were beside the rays: mean squares, statures^2, the latest most."""
+    """Running mean squares of the distances from proposed joints to their rays, statures^2."""
 
     whole: float
     """Of all joints."""
     pairs: Vector
-    """(6,) of left and right together: wrists may be wrong while all else is right."""
+    """(6,) of each pair of left and right: wrists may be wrong while all else is right."""
 
 
 def step(
     before: Misfit | None, proposed_m: NDArray[np.float64], rays: Rays, stature_m: float
 ) -> Misfit:
-    """How far they were up to an instant.
+    """The residuals up to an instant.
 
     Args:
-        before: Up to the instant before; None at the first: one instant alone proves little.
+        before: Up to the instant before; None at the first.
         proposed_m: (12, 3) world, of JOINTS.
         rays: Of the views' landmarks.
         stature_m: Of the person.
@@ -79,11 +79,11 @@ def wider_m(misfit: Misfit, rays: Rays, stature_m: float) -> Vector:
 
 
 def doubt(misfit: Misfit, turned: bool) -> float:
-    """How many times lower the odds are that proposed joints are right than they are said to be.
+    """The factor by which the odds that proposed joints are right are divided.
 
     Args:
         misfit: Up to this instant.
-        turned: Proposals are taken for turned about.
+        turned: The proposal is flipped.
     """
     beyond = max(1.0, math.sqrt(misfit.whole) / DOUBTED_FROM)
     return (TURNED if turned else 1.0) * float(beyond**ODDS_EXPONENT)

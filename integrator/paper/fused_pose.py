@@ -33,8 +33,8 @@ def step(state: State, rig: Rig, seen: TwoSeen, settled_at: Vector | None) -> Po
 def _faced(state: State, seen: TwoSeen) -> tuple[Facing, Facing]:
     """Facade and flank, settled between the views' votes (P48); one view alone decides itself.
 
-    Beyond the paper, of a body that both views have measured, the one that is left decides
-    nothing: arms that are raised narrow the upper body as a turn would, and nobody says no.
+    Beyond the paper: once the body is measured, a view that is alone keeps the last facing, because
+    raised arms narrow the upper body as a turn would and no other view contradicts.
     """
     first, second = seen
     if first is None or second is None:

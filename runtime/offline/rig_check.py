@@ -13,7 +13,7 @@ from common.video.clip_facts import Clip
 from viewer.captured_frame import CapturedFrame
 
 MOST_LATE_FRAMES: Final = 0.75
-"""What is later is tracked again, with its times set back."""
+"""A view 2 that is late by more than this, in frames, is tracked again with its times set back."""
 DOUBTED: Final = 0.05
 """Share of the confidence that is left to bodies of views that do not belong together in time."""
 MOST_FRAMES: Final = 3_000
@@ -49,7 +49,7 @@ class Witness:
                 rows.append(row_of(report))
 
     def sighting(self, clip: Clip) -> Sighting | None:
-        """What both views of a clip saw; None where it has one, or more."""
+        """What both views of a clip saw; None where it has one view, or more than two."""
         if len(clip.views) != 2:
             return None
         first, second = (track_of_rows(self.seen.rows.get(v.number, [])) for v in clip.views)
@@ -73,7 +73,7 @@ def unchecked(clip: Clip) -> list[str]:
 
 
 def is_late(clip: Clip, clock: Clock) -> bool:
-    """Whether view 2 is found to be later than its clock may be off unnoticed."""
+    """Whether view 2 is late by more than MOST_LATE_FRAMES."""
     period_s = clip.every / clip.views[0].fps
     return clock.is_found and abs(clock.late_s) > MOST_LATE_FRAMES * period_s
 
@@ -117,7 +117,7 @@ def doubts(facts: Facts) -> list[str]:
 
 
 def clock_facts(clip: Clip, clock: Clock, given_s: float | None) -> Facts:
-    """For the summary: by how much the times of view 2 were set back, and what else may be.
+    """For the summary: by how much view 2 was set back in time, and which other latenesses fit.
 
     Args:
         clip: As it was tracked.
