@@ -38,9 +38,8 @@ PROPOSED_RIGHT: Final = (0.18, 0.9)
 SHOWN_RIGHT: Final = (0.02, 0.91)
 """Confidence in a landmark at which it is taken for right with probability 0 and 1."""
 FIRM_M: Final = 0.02
-"""Standard deviation to which the confidence of a fused joint is related, metres."""
 PLATT: Final = (2.15, 4.25)
-"""Platt scaling of a fused joint's confidence: the logit at a standard deviation of FIRM_M, and its
+"""Platt scaling of a fused joint's confidence: its logit at a standard deviation of FIRM_M, and the
 fall as that grows e-fold. Fitted to joints less than 50 mm off (docs/measurements.md)."""
 Probability = TypeVar("Probability", float, Vector)
 _DIAGONAL: Final = [0, 3, 5]
