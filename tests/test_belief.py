@@ -59,6 +59,13 @@ def test_a_body_beside_its_landmarks_is_not() -> None:
     assert not is_believed(moved(0.6, 0.0), RIG, pair(BODY), (0.9, 0.9))
 
 
+def test_of_three_views_one_that_sees_it_elsewhere_is_not_enough_two_are() -> None:
+    three = msgspec.structs.replace(RIG, cameras=(*RIG.cameras, RIG.cameras[0]))
+    here, there = report(0, BODY), report(0, moved(0.6, 0.0))
+    assert is_believed(BODY, three, (here, report(1, BODY), there), (*FITS, 0.7))
+    assert not is_believed(BODY, three, (here, report(1, moved(0.0, 0.6)), there), (*FITS, 0.7))
+
+
 def test_one_view_that_sees_it_elsewhere_is_enough() -> None:
     seen = (report(0, BODY), report(1, moved(0.0, 0.6)))
     assert not is_believed(BODY, RIG, seen, FITS)

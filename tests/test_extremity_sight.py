@@ -4,6 +4,7 @@ import msgspec
 import numpy as np
 import pytest
 from staging import RIG, observation
+from test_best_pair import rig as rig_around
 
 from common.body.body import rest_pose
 from common.body.extremities import EXTREMITY_NAMES, extremities
@@ -37,6 +38,26 @@ def test_what_both_views_see_is_where_their_lines_meet() -> None:
     places_m, sure = found(report(1, TRUE_M, (0.9,) * 7), report(2, TRUE_M, (0.6,) * 7))
     assert places_m == pytest.approx(TRUE_M, abs=1e-6)
     assert sure.tolist() == [0.6] * 7
+
+
+@pytest.mark.parametrize("wrong", [0, 1, 2])
+def test_of_three_views_the_two_that_are_surest_place_each_point(wrong: int) -> None:
+    around = rig_around(0.0, 50.0, 100.0)
+    seen = []
+    for view, camera in enumerate(around.cameras):
+        places_m = TRUE_M + np.array([0.0, 0.15, 0.0]) if view == wrong else TRUE_M
+        pixels = tuple(map(tuple, project(camera, places_m).tolist()))
+        sure = (0.4 if view == wrong else 0.7 + 0.1 * view,) * 7
+        seen.append(
+            observation(
+                landmarks=msgspec.structs.replace(
+                    NOBODY, extremities_px=pixels, extremities_confidence=sure
+                )
+            )
+        )
+    places_m, sure_of = seen_extremities(RULE_M, around, tuple(seen), STATURE_M)
+    assert places_m == pytest.approx(TRUE_M, abs=1e-6)
+    assert sure_of == pytest.approx([0.7 + 0.1 * min({0, 1, 2} - {wrong})] * 7)
 
 
 def test_what_nobody_sees_is_the_rules_and_said_to_be_unmeasured() -> None:

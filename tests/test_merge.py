@@ -25,6 +25,7 @@ from staging import (
     standing,
 )
 
+from calibration.gate import rig_agreement
 from common.body.body import ANGLE_NAMES, ANGLES_IN_POSE, JOINT_NAMES, POSE_INDEX, Vector
 from common.body.kinematics import joints
 from common.body.proportions import body_vector, stature
@@ -382,6 +383,19 @@ def instants(period_s: float = 0.1, alone: bool = False) -> merge_state.State:
     return merge_state.init(
         RIG, period_s, Settings(), DEFAULT, merge_state.Start(alone, times=times)
     )
+
+
+def test_what_is_remembered_of_one_pair_of_views_is_none_of_another() -> None:
+    """The networks' memory is of where the pair's cameras stand, the agreement is between them."""
+    kept: Any = SimpleNamespace()
+    found = merge_state.Posed(standing(), ("facade", "flank"), memory=kept)
+    agreement = rig_agreement.State(last_s=3.0)
+    before = instants()._replace(pair=(0, 1), found=found, agreement=agreement)
+    same, other = merge._with_pair(before, (0, 1)), merge._with_pair(before, (0, 2))
+    assert (same.found, same.agreement) == (found, agreement)
+    assert other.pair == (0, 2)
+    assert other.found == found._replace(memory=None)
+    assert other.agreement == rig_agreement.State()
 
 
 def test_an_instant_counts_on_from_what_each_viewer_reported_last() -> None:

@@ -1,14 +1,12 @@
 """The platform of Python's own public parts: spawned processes, pipes, shared memory."""
 
-import signal
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from types import FrameType
 from typing import Final
 
 import psutil
 
-from common.platform.platform import Child, Job, Launcher, Platform, Started
+from common.platform.platform import Child, Job, Launcher, Platform, Started, heeding_sigterm
 from common.platform.portable_child import PortableChild
 from common.platform.portable_worker import EAR, PortableLauncher, spawned
 
@@ -31,16 +29,8 @@ class PortablePlatform:
     @contextmanager
     def asked_to_end(self, end: Callable[[], None]) -> Iterator[None]:
         """By the pipe of a worker; by SIGTERM too, where the system sends one."""
-
-        def heed(_number: int, _frame: FrameType | None) -> None:
-            end()
-
-        before = signal.signal(signal.SIGTERM, heed)
-        try:
-            with EAR.listening(end):
-                yield
-        finally:
-            signal.signal(signal.SIGTERM, before)
+        with heeding_sigterm(end), EAR.listening(end):
+            yield
 
     def child(
         self, module: str, stall_s: float, picture_size: tuple[int, int] | None = None

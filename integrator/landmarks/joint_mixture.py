@@ -29,7 +29,7 @@ class Spread(NamedTuple):
     """Half width of the uniform part, in standard deviations of the roughly right part."""
 
     def right_of(self, confidence: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Standard deviation of the right part, by the confidence of its evidence."""
+        """Standard deviation of the right part, by the confidence of its given."""
         return self.right + self.unsure * (1.0 - confidence)
 
 
@@ -75,7 +75,7 @@ class Evidence(NamedTuple):
 
 
 @compiled
-def most_probable(told: Evidence, place_m: Vector, precision: Vector) -> float:
+def most_probable(given: Evidence, place_m: Vector, precision: Vector) -> float:
     """The highest log probability of the place of one joint.
 
     Rounds of weighted least squares (the EM algorithm of Dempster 1977) climb to a peak from the
@@ -83,19 +83,19 @@ def most_probable(told: Evidence, place_m: Vector, precision: Vector) -> float:
     meet. The highest peak counts.
 
     Args:
-        told: The evidence.
+        given: The evidence.
         place_m: (3,) is set to the place.
         precision: (6,) is set to xx, xy, xz, yy, yz, zz of its inverse covariance, 1 / m^2.
     """
     best = -np.inf
     normal, right, here = np.zeros(6), np.zeros(3), np.zeros(3)
-    taken = np.full(len(told.centres_m), NONE)
+    taken = np.full(len(given.centres_m), NONE)
     while True:
-        if _start(told, taken, here):
+        if _start(given, taken, here):
             for _ in range(ROUNDS):
-                _weigh(told, here, normal, right)
+                _weigh(given, here, normal, right)
                 _solve(normal, right, here)
-            found = _weigh(told, here, normal, right)
+            found = _weigh(given, here, normal, right)
             if found > best:
                 best = found
                 place_m[:] = here
@@ -123,23 +123,23 @@ def _next(taken: NDArray[np.int64]) -> bool:
 
 
 @compiled
-def _start(told: Evidence, taken: NDArray[np.int64], here: Vector) -> bool:
+def _start(given: Evidence, taken: NDArray[np.int64], here: Vector) -> bool:
     """Set the start for the rays that are taken; False where there is none."""
-    here[:] = told.proposed_m
+    here[:] = given.proposed_m
     one = other = NONE
     for view in range(len(taken)):
         if taken[view] != NONE:
-            if told.inliers[view, taken[view]] <= 0.0:
+            if given.inliers[view, taken[view]] <= 0.0:
                 return False
-            _drop(told.centres_m[view], told.directions[view, taken[view]], here)
+            _drop(given.centres_m[view], given.directions[view, taken[view]], here)
             one, other = other, view
     if NONE in (one, other):
         return True
     return _meet(
-        told.centres_m[one],
-        told.directions[one, taken[one]],
-        told.centres_m[other],
-        told.directions[other, taken[other]],
+        given.centres_m[one],
+        given.directions[one, taken[one]],
+        given.centres_m[other],
+        given.directions[other, taken[other]],
         here,
     )
 
@@ -174,40 +174,40 @@ def _meet(centre_m: Vector, one: Vector, other_m: Vector, two: Vector, here: Vec
 
 
 @compiled
-def _weigh(told: Evidence, here: Vector, normal: Vector, right: Vector) -> float:
+def _weigh(given: Evidence, here: Vector, normal: Vector, right: Vector) -> float:
     """The log probability of a place, and the normal equations of the next, better place."""
     square = 0.0
     for i in range(3):
-        square += (here[i] - told.proposed_m[i]) ** 2
-    inlier_probability, spread_m = told.inlier_probability, told.spreads_m[0]
+        square += (here[i] - given.proposed_m[i]) ** 2
+    inlier_probability, spread_m = given.inlier_probability, given.spreads_m[0]
     unlikely = 1.0 - inlier_probability
     is_right = _bell(square, spread_m, inlier_probability, 3)
-    is_rough = _bell(square, told.roughly_m, unlikely * told.often, 3)
-    total = is_right + is_rough + _anywhere(told.roughly_m, unlikely, told.often, PROPOSED, 3)
-    weight = (is_right / spread_m**2 + is_rough / told.roughly_m**2) / total + HELD
+    is_rough = _bell(square, given.roughly_m, unlikely * given.often, 3)
+    total = is_right + is_rough + _anywhere(given.roughly_m, unlikely, given.often, PROPOSED, 3)
+    weight = (is_right / spread_m**2 + is_rough / given.roughly_m**2) / total + HELD
     normal[0] = normal[3] = normal[5] = weight
     normal[1] = normal[2] = normal[4] = 0.0
     for i in range(3):
-        right[i] = weight * told.proposed_m[i]
+        right[i] = weight * given.proposed_m[i]
     found = math.log(total)
-    for view in range(len(told.centres_m)):
-        if told.inliers[view, 0] > 0.0:
-            found += _look(told, view, here, normal, right)
+    for view in range(len(given.centres_m)):
+        if given.inliers[view, 0] > 0.0:
+            found += _look(given, view, here, normal, right)
     return found
 
 
 @compiled
-def _look(told: Evidence, view: int, here: Vector, normal: Vector, right: Vector) -> float:
+def _look(given: Evidence, view: int, here: Vector, normal: Vector, right: Vector) -> float:
     """The log probability by one view's rays, whose terms are added to the normal equations.
 
     Each ray pulls by the probability that the joint is on it.
     """
-    first, second = told.directions[view]
-    inlier_probability, other = told.inliers[view]
+    first, second = given.directions[view]
+    inlier_probability, other = given.inliers[view]
     centre_m, spread_m, roughly_m = (
-        told.centres_m[view],
-        told.spreads_m[1 + view],
-        SHOWN.roughly * told.stature_m,
+        given.centres_m[view],
+        given.spreads_m[1 + view],
+        SHOWN.roughly * given.stature_m,
     )
     square = _beside(centre_m, first, here)
     unlikely = 1.0 - inlier_probability - other

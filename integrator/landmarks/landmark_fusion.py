@@ -282,7 +282,7 @@ def _modes(
                 along[view] = directions[view, own]
                 inliers[view] = seen[view, own]
                 spreads[1 + view] = seen_m[view, own]
-            told = Evidence(
+            given = Evidence(
                 proposed_m[joint],
                 sure[joint],
                 centres_m,
@@ -293,7 +293,7 @@ def _modes(
                 often,
                 stature_m,
             )
-            values[joint, way] = most_probable(told, places_m[joint, way], precisions[joint, way])
+            values[joint, way] = most_probable(given, places_m[joint, way], precisions[joint, way])
     return values, places_m, precisions
 
 

@@ -22,7 +22,7 @@ def step(state: State, rig: Rig, seen: TwoSeen, settled_at: Vector | None) -> Po
     Args:
         state: What is remembered.
         rig: Two cameras.
-        seen: What each view persons; None where it has nobody.
+        seen: What each view reports; None where it shows no person.
         settled_at: Where the body was measured, if that has just been settled.
     """
     facing = _faced(state, seen)

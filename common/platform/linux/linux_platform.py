@@ -1,14 +1,12 @@
 """Linux: workers forked of a zygote, children forked or executed, signals, memory by its file."""
 
 import os
-import signal
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from types import FrameType
+from collections.abc import Callable
+from contextlib import AbstractContextManager
 from typing import Final
 
 from common.platform.linux.child_process import ChildProcess
-from common.platform.platform import Child, Job, Launcher, Platform, Started
+from common.platform.platform import Child, Job, Launcher, Platform, Started, heeding_sigterm
 
 
 class LinuxPlatform:
@@ -26,18 +24,9 @@ class LinuxPlatform:
 
         return begun(job, forked=False)
 
-    @contextmanager
-    def asked_to_end(self, end: Callable[[], None]) -> Iterator[None]:
+    def asked_to_end(self, end: Callable[[], None]) -> AbstractContextManager[None]:
         """By SIGTERM."""
-
-        def heed(_number: int, _frame: FrameType | None) -> None:
-            end()
-
-        before = signal.signal(signal.SIGTERM, heed)
-        try:
-            yield
-        finally:
-            signal.signal(signal.SIGTERM, before)
+        return heeding_sigterm(end)
 
     def child(
         self, module: str, stall_s: float, picture_size: tuple[int, int] | None = None
