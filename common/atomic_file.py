@@ -1,4 +1,4 @@
-"""Files that take the place of older ones whole, or not at all."""
+"""Atomic file writing: a new file replaces the old one completely, or not at all."""
 
 import errno
 import secrets
@@ -8,35 +8,35 @@ from pathlib import Path
 from typing import Final
 
 FULL: Final = (errno.ENOSPC, errno.EDQUOT)
-"""Of an error where space is what lacks."""
+"""The errno values that mean that the disk, the quota or the file size limit is exhausted."""
 NAME_BYTES: Final = 8
-"""Of chance in the name of a file that is not whole yet."""
+"""Number of random letters in the name of a file that is still being written."""
 
 
 class FileRefused(ValueError):
-    """A file whose place no other may take; the text names it and the cure."""
+    """A file that must not be replaced; the text names it and the cure."""
 
 
 def refuse_to_replace(path: Path, replace: bool, option: str = "--out") -> None:
-    """Say that a file is there already, unless it may be lost.
+    """Refuse to replace a file that exists, unless the caller allows it.
 
     Args:
-        path: The file.
-        replace: It may be lost.
-        option: Of the command, which names it.
+        path: The file to be written.
+        replace: True where the existing file may be replaced.
+        option: The command-line option that allows it, for the message.
 
     Raises:
-        FileRefused: When it is there and may not.
+        FileRefused: When the file exists and may not be replaced.
     """
     if path.exists() and not replace:
         raise FileRefused(f"{path} is there already: name another {option}, or add --force")
 
 
 def refuse_special(path: Path) -> None:
-    """Say that a device, a pipe or a socket is there, of which a file would make an end.
+    """Refuse a path that is a device, a pipe or a socket: replacing it would destroy it.
 
     Raises:
-        FileRefused: When it is.
+        FileRefused: When it is one.
     """
     if path.exists() and not (path.is_file() or path.is_dir()):
         raise FileRefused(f"{path} is no ordinary file: name another --out")
@@ -44,10 +44,10 @@ def refuse_special(path: Path) -> None:
 
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
-    """A file beside `path` to write into; it takes its place when all of it was written.
+    """A temporary file beside `path` to write into; it replaces `path` once it is complete.
 
-    When anything fails, a full disk too, what stood there before is untouched. Who may read it is
-    the user's to say, as of any file: by their umask.
+    When anything fails, a full disk included, the old file is untouched. The umask decides who may
+    read the new file.
 
     Raises:
         OSError: When the folder cannot be written.
@@ -65,12 +65,12 @@ def replacing(path: Path) -> Iterator[Path]:
 
 
 def unwritten(path: Path, error: OSError, cure: str) -> str:
-    """What to say of a file or folder that could not be written.
+    """The message for a file or folder that could not be written.
 
     Args:
-        path: Of it.
-        error: Why.
-        cure: What helps, whatever it was.
+        path: The file or folder.
+        error: What the system reported.
+        cure: What helps where the disk is not full.
     """
     room = "free some space or " if error.errno in FULL else ""
     return f"cannot write {path}: {error.strerror or error}; {room}{cure}"

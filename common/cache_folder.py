@@ -1,4 +1,4 @@
-"""The folder of what is compiled, one for each interpreter and version of the libraries."""
+"""The folder for compiled code, one per interpreter and version of the libraries."""
 
 import hashlib
 import logging
@@ -21,17 +21,17 @@ from common.packages import ROOT
 from common.source_digest import add, digest_of
 
 KEPT: Final = 3
-"""Folders of as many versions stay: of this one and of those that were used last."""
+"""Number of version folders that are kept: this one and those used last."""
 ADMINISTRATOR: Final = 0
-"""Who owns the system, and may have installed us: what is compiled is theirs, this user's, or of
-whoever owns the sources, for it is loaded without a question."""
+"""User ids whose compiled code is loaded without question: root, who may have installed the
+package, this user, and the owner of the sources."""
 NAME: Final = re.compile(r"tritrack-[0-9a-f]{32}")
 
 log = logging.getLogger(__name__)
 
 
 def versions_word() -> str:
-    """A word for the interpreter and the libraries that compile, 32 hexadecimal digits."""
+    """A digest of the interpreter and the compiling libraries, 32 hexadecimal digits."""
     digest = hashlib.sha256()
     for version in (sys.version, np.__version__, numba.__version__):
         add(digest, "version", version.encode())
@@ -40,7 +40,8 @@ def versions_word() -> str:
 
 @cache
 def compiled_folder() -> Path:
-    """The folder of this process's versions, there and writable; old ones beside it are removed."""
+    """The folder of this process's versions, created and writable; old ones beside it are
+    removed."""
     folder = first_writable(parents(ROOT, os.environ), f"tritrack-{versions_word()}")
     os.utime(folder)
     prune(folder.parent)
@@ -48,15 +49,15 @@ def compiled_folder() -> Path:
 
 
 def mark_of_all() -> Path:
-    """The file that is there once all that commands run by default was compiled."""
+    """A marker file: it exists once all that commands run by default was compiled."""
     return compiled_folder() / f"all-{digest_of(ROOT)}"
 
 
 def parents(root: Path, environ: Mapping[str, str]) -> Iterator[Path]:
-    """Where the folder may lie, best first.
+    """Candidate parents of the folder, best first.
 
-    What numba is told in NUMBA_CACHE_DIR; the checkout; the user's cache folder, for an installed
-    wheel or a checkout of another owner.
+    The folder in NUMBA_CACHE_DIR; the checkout; the user's cache folder, for an installed wheel or
+    a checkout of another owner.
     """
     if environ.get("NUMBA_CACHE_DIR"):
         yield Path(environ["NUMBA_CACHE_DIR"])
@@ -68,9 +69,9 @@ def parents(root: Path, environ: Mapping[str, str]) -> Iterator[Path]:
 
 
 def first_writable(candidates: Iterable[Path], name: str) -> Path:
-    """The folder of that name in the first place that can be written; made where it is not there.
+    """The folder of that name in the first candidate that can be written; created where missing.
 
-    Where none can be: in a temporary folder of this user alone, with a warning.
+    Where no candidate can be written: a temporary folder of this user, with a warning.
     """
     tried = []
     for parent in candidates:
@@ -83,9 +84,9 @@ def first_writable(candidates: Iterable[Path], name: str) -> Path:
 
 
 def prune(parent: Path) -> None:
-    """Remove the folders of other versions, all but KEPT that were used last.
+    """Remove the folders of other versions, all but the KEPT that were used last.
 
-    A process that runs on an older one yet does without: it compiles, and makes its folder again.
+    A process that still uses a removed one goes on: it compiles, and creates its folder again.
     """
     named = [path for path in parent.iterdir() if NAME.fullmatch(path.name)]
     for path in sorted(named, key=used_s, reverse=True)[KEPT:]:
@@ -105,8 +106,8 @@ def _made(folder: Path) -> Path:
 
 
 def _private() -> Path:
-    """A folder for temporary files that no other user can have put anything into: another user's
-    compiled code would be a stranger's program."""
+    """A folder for temporary files that no other user can have written to: compiled code of
+    another user could be malicious."""
     folder = Path(tempfile.gettempdir()) / f"tritrack-{os.getuid()}"
     with suppress(FileExistsError):
         folder.mkdir(mode=0o700)
@@ -116,8 +117,8 @@ def _private() -> Path:
 
 
 def used_s(path: Path) -> float:
-    """When it was written last, by the system's clock; 0 where it is gone."""
+    """Time of the last write, by the system's clock; 0 where the file is gone."""
     try:
         return path.stat().st_mtime
-    except FileNotFoundError:  # Another process tidies up too.
+    except FileNotFoundError:  # another process removes folders too
         return 0.0

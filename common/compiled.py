@@ -1,4 +1,4 @@
-"""Compiled functions: numba's decorators, and what they compiled, kept for the next process."""
+"""Compiled functions: numba's decorators, with compiled code cached for the next process."""
 
 import glob
 import hashlib
@@ -19,8 +19,8 @@ from common.packages import PACKAGES
 from common.source_digest import module_digest
 
 KEPT: Final = 8
-"""States of the sources of which compiled code stays, for each function and signature: branches
-and edits that come and go need not compile again."""
+"""Number of source states whose compiled code is kept, for each function and signature:
+switching between branches and edits then needs no new compilation."""
 
 log = logging.getLogger(__name__)
 
@@ -29,20 +29,20 @@ Function = TypeVar("Function", bound=Callable[..., object])
 
 class KeptOverloads(NullCache):
     """numba's cache of one function: a file for each signature and each state of the sources that
-    the function rests on.
+    the function depends on.
 
-    numba's own is not for us: it looks at a function's own file alone, so a callee that changed in
-    another one goes unnoticed, and two processes that compile two signatures at once give both the
-    same name. A file here is named by all that decides its content; it is whole or not there.
+    numba's own cache looks at a function's own file alone, so it misses a change of a callee in
+    another file; and two processes that compile two signatures at once write the same file name.
+    Here the name contains all that decides the content, and the file is complete or absent.
     """
 
     def __init__(self, function: Callable[..., object]) -> None:
-        """Nothing but sources is read, and nothing written, before the function is called."""
+        """Before the first call nothing but sources is read, and nothing is written."""
         self._name = f"{function.__module__}.{function.__qualname__}"
         self._sources = module_digest(function.__module__)
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """What was kept for a signature; None where nothing was, or what cannot be read."""
+        """The cached code for a signature; None where there is none, or where it cannot be read."""
         target_context.refresh()
         key = (sig, target_context.codegen().magic_tuple())
         try:
@@ -52,7 +52,8 @@ class KeptOverloads(NullCache):
         return CompileResult._rebuild(target_context, *payload) if kept == key else None
 
     def save_overload(self, sig: Any, data: Any) -> None:
-        """Keep it, but not what holds addresses of this process; on a full disk do without."""
+        """Cache compiled code, unless it contains addresses of this process; a full disk is
+        ignored."""
         if data.library.has_dynamic_globals:
             return
         key = (sig, data.codegen.magic_tuple())
@@ -72,26 +73,26 @@ class KeptOverloads(NullCache):
         return f"{self._name}-{hashlib.sha256(repr(key).encode()).hexdigest()[:16]}"
 
     def _prune(self, key: Any) -> None:
-        """Remove what older sources gave for a signature, all but the newest KEPT."""
+        """Remove the code of older sources for a signature, all but the newest KEPT."""
         of_all = compiled_folder().glob(f"{glob.escape(self._stem(key))}-*.nbc")
         for path in sorted(of_all, key=used_s, reverse=True)[KEPT:]:
             path.unlink(missing_ok=True)
 
 
 class Compiler(Protocol):
-    """A decorator: what it compiles is called as before."""
+    """A decorator that keeps the signature of what it compiles."""
 
     def __call__(self, function: Function, /) -> Function:
-        """The function, compiled where it is first called."""
+        """The function, compiled at its first call."""
         ...
 
 
 def compiling(**flags: bool | str) -> Compiler:
-    """A decorator: numba's njit with these flags, which keeps what it compiled and lets other
-    threads run meanwhile.
+    """A decorator: numba's njit with these flags and this cache; other threads run during its
+    calls.
 
     Functions of a module that runs as the program, or of a test, are compiled anew each time: the
-    next process cannot know them by the name `__main__`, and no digest speaks for them.
+    next process does not know them by the name `__main__`, and no digest covers them.
     """
 
     def decorate(function: Function) -> Function:
@@ -104,8 +105,8 @@ def compiling(**flags: bool | str) -> Compiler:
 
 
 compiled: Final = compiling()
-"""A function that computes as Python does; division by zero is an error."""
+"""Compile a function that computes as Python does; division by zero is an error."""
 KERNEL: Final = compiling(fastmath=True, error_model="numpy")
-"""A whole-picture pass."""
+"""Compile a pass over a whole picture."""
 INLINE: Final[Compiler] = numba.njit(fastmath=True, error_model="numpy", inline="always")
-"""What a pass does at a pixel; calls that carry arrays would cost more than the work."""
+"""Compile an operation on one pixel; passing arrays to it would cost more than the work."""

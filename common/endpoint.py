@@ -1,4 +1,4 @@
-"""Who can reach an endpoint: this machine alone, or others too."""
+"""Who can reach an endpoint: this machine alone, or other machines too."""
 
 import ipaddress
 import re
@@ -8,15 +8,15 @@ FORM: Final = re.compile(
     r"(?:(?:tcp|tls|udp|quic|ws)/(?P<host>[^/]*):\+?(?P<port>\d+)(?:[?#].*)?"
     r"|(?:unixsock-stream|unixpipe|vsock|serial)/.+)"
 )
-"""How an endpoint is written, by all kinds that Zenoh knows."""
+"""The form of an endpoint, with all protocols that Zenoh knows."""
 ADDRESS: Final = re.compile(r"[^/]*/(?P<host>.*):\+?\d+(?:[?#].*)?", re.DOTALL)
-"""All that Zenoh takes for a host and its port; other kinds of endpoint lie within this machine."""
+"""Endpoints with a host and a port, as Zenoh reads them; all others are within this machine."""
 
 
 def is_loopback(host: str) -> bool:
-    """Whether a name or address is this machine's own, which no other reaches.
+    """Whether a name or address belongs to this machine alone.
 
-    A name is never looked up: of all names only `localhost` is ours.
+    Names are not looked up: of names only `localhost` counts as ours.
     """
     try:
         return ipaddress.ip_address(host.strip("[]")).is_loopback
@@ -25,7 +25,7 @@ def is_loopback(host: str) -> bool:
 
 
 def is_host(text: str) -> bool:
-    """Whether something can be looked up as a name or address: letters of each part, at most 63."""
+    """Whether a text can be looked up as a name or address: each part has at most 63 letters."""
     try:
         text.encode("idna")
     except UnicodeError:
@@ -34,7 +34,7 @@ def is_host(text: str) -> bool:
 
 
 def is_endpoint(text: str) -> bool:
-    """Whether something has the form of an endpoint, tcp/127.0.0.1:7447; no name is looked up."""
+    """Whether a text has the form of an endpoint, tcp/127.0.0.1:7447; names are not looked up."""
     form = FORM.fullmatch(text)
     if form is None:
         return False
@@ -48,10 +48,10 @@ def is_exposed(endpoint: str) -> bool:
 
 
 def address_of(text: str) -> tuple[str, int]:
-    """Host and port of an address as it is written, `127.0.0.1:9464`.
+    """Host and port of an address such as `127.0.0.1:9464`.
 
     Raises:
-        ValueError: When it is none.
+        ValueError: When it is no such address.
     """
     host, _, port = text.rpartition(":")
     if not (host and is_host(host) and _is_port(port)):

@@ -1,4 +1,4 @@
-"""What a run does beyond the print: every departure by name, and the values that have names."""
+"""Departures from the printed papers, each by its name, and the combinations that have names."""
 
 from typing import Final, Literal
 
@@ -8,46 +8,48 @@ Mode = Literal["default", "paper", "thesis"]
 
 
 class Method(msgspec.Struct, frozen=True, kw_only=True):
-    """How pictures become a body: False is as the paper prints it, True a departure.
+    """How pictures become a body; each field: False is as the paper prints it, True a departure.
 
-    Steps read its fields; none asks for the name of a mode. The ablation switches each field by
-    itself. What is not listed is printed, or one of the readings without which the print does not
-    run (M1 to M25, and where P and T of docs/requirements.md are ambiguous), or what the print
-    leaves out in every mode: the pose before the opening posture and after a loss, found without a
-    pose before it, and whether a pose is believed.
+    Steps read the fields; none asks for the name of a mode. The ablation switches each field alone.
+    What is not listed is as printed, or is a reading without which the print does not run (M1 to
+    M25, and where P and T of docs/requirements.md are ambiguous), or is left open by the print in
+    every mode: the pose before the opening posture and after a loss, found without an earlier pose,
+    and whether a pose is believed.
     """
 
     steady_light: bool
-    """Silhouettes are cut out under the light of each frame: exposure and flicker do not count."""
+    """Silhouettes are segmented under the light of each frame: exposure and flicker do not
+    matter."""
     pixel_evidence: bool
-    """Pixels are told by the noise of each, forgiven soft shadows, and their neighbours; otherwise
-    by a threshold around what the empty background showed, opened and closed (P3)."""
+    """Pixels are classified by each one's noise, by soft shadows that are allowed, and by their
+    neighbours; otherwise by a threshold around the empty background, opened and closed (P3)."""
     body_colours: bool
-    """What colours body and background have is learnt while one looks."""
+    """The colours of body and background are learnt during the run."""
     alpha_matte: bool
-    """A small network draws the contour again, by how much of each pixel the body covers."""
+    """A small network redraws the contour, by the share of each pixel that the body covers."""
     slow_light: bool
-    """The background takes on the slow changes of the light."""
+    """The background follows slow changes of the light."""
 
     follows_cameras: bool
-    """A camera that is moved is noticed by its background, which is moved with it."""
+    """A moved camera is detected by its background, which is moved with it."""
 
     landmarks: bool
-    """The viewer looks for joints in the picture itself; the body is made of those and outlines."""
+    """The viewer detects joints in the picture itself; the body is estimated from those and
+    silhouettes."""
     clutter_removal: bool
-    """What both views do not show as one piece of space is no part of the person, where the network
-    is surer of what is left."""
+    """What both views do not show as one piece of space is no part of the person, where the
+    network is surer of the rest."""
 
     armless_shift: bool
-    """The body's place is searched by trunk, head and legs: arms still have old angles (P27)."""
+    """The body's place is searched with trunk, head and legs: arms still have old angles (P27)."""
     raised_arm_ranges: bool
-    """The range of theta_Z turns over with an arm that is swung up past the horizontal (P30)."""
+    """The range of theta_Z is mirrored for an arm that is swung up past the horizontal (P30)."""
     hidden_arms: bool
-    """An arm is moved in the flank only for a gain in S: one that is hidden there stays (P32)."""
+    """An arm in the flank view moves only for a gain in S: a hidden one stays (P32)."""
     common_squat: bool
-    """The flank also searches for both legs as one squat (P35)."""
+    """The flank view also searches for both legs as one squat (P35)."""
     squat_first: bool
-    """Who squats by the facade lifts no leg, whatever theta_Z of the hip (P53)."""
+    """A person who squats in the facade view lifts no leg, whatever theta_Z of the hip (P53)."""
     steady_elbows: bool
     """Algorithm 4 asks for a bend of 15 degrees, away from a curve's ends, and takes the split with
     the least residual, not the largest difference (T16)."""
@@ -55,44 +57,44 @@ class Method(msgspec.Struct, frozen=True, kw_only=True):
     legs_to_floor: bool
     """Measured legs reach from the navel to the floor: toes are nearer to a camera than soles."""
     scaled_arbiter: bool
-    """The arbiter holds widths of both views against each other at one scale (P48)."""
+    """The arbiter compares the widths in both views at one scale (P48)."""
     held_facing: bool
-    """One view that is left alone does not change the facing of a body that both have measured."""
+    """A single remaining view does not change the facing of a body that two have measured."""
     shared_start: bool
-    """Viewers start where and how both views have the body, not as each had it itself (L1)."""
+    """Viewers start from both views' estimate of the body, not each from its own (L1)."""
     squat_votes: bool
     """Both silhouettes vote on squats with a bowed trunk."""
     place_votes: bool
-    """They vote on where the body is."""
+    """Both silhouettes vote on the body's place."""
     arm_votes: bool
-    """They vote on which arm it is that swings, and regain an arm that was lost (L2, L3)."""
+    """Both silhouettes vote on which arm swings, and recover an arm that was lost (L2, L3)."""
     turn_votes: bool
-    """They vote joint by joint on a body that was not measured in the opening posture."""
+    """Both silhouettes vote joint by joint on a body that the opening posture did not measure."""
 
     proposals: bool
-    """A network with memory proposes the joints from the silhouettes; nothing is searched for."""
+    """A recurrent network proposes the joints from the silhouettes; nothing is searched for."""
     lifting: bool
-    """A second network lifts the joints from landmarks alone: what one outline tells, and what both
-    tell of who leans far, is joined with them."""
+    """A second network lifts the joints from landmarks alone. It is joined to the first where
+    one view is alone, and where the person leans far."""
     free_joints: bool
     """Joints may lie beside the cylinders' ends: shoulders rise, and people differ."""
     shape_fit: bool
     """The body's widths and arms are fitted to silhouettes as the person moves."""
     reflection: bool
-    """One view alone remembers front and back: a proposal that jumps between them is reflected."""
+    """A single view remembers front and back: a proposal that jumps between them is reflected."""
     joint_limits: bool
-    """One view's limbs are held within the limits of their joints in space (P30, P35)."""
+    """A single view's limbs are held within the limits of their joints in space (P30, P35)."""
     smoothing: bool
     """Published angles are smoothed by a Kalman filter."""
     film_smoothing: bool
-    """Joints of a film that is followed in passes are smoothed by what comes after as well, and its
-    limbs keep their lengths."""
+    """Joints of a clip that is tracked in passes are smoothed with later frames too, and limbs
+    keep their lengths."""
 
     density_recognizer: bool
-    """Postures are named by densities of angles and of their course, not by 64 symbols (P57)."""
+    """Postures are modelled by densities of angles and their course, not by 64 symbols (P57)."""
 
     stick_lifting: bool
-    """The thesis's own way for one view: a stick body is fitted and lifted (T10 to T22)."""
+    """The thesis's method for one view: a stick body is fitted and lifted (T10 to T22)."""
 
 
 def _all(departs: bool) -> Method:
@@ -102,7 +104,7 @@ def _all(departs: bool) -> Method:
 PAPER: Final = _all(False)
 """Huang & Chung 2004, as printed, with the readings that make it run."""
 DEFAULT: Final = msgspec.structs.replace(_all(True), stick_lifting=False)
-"""The best that is known today."""
+"""The best method known today."""
 THESIS: Final = msgspec.structs.replace(
     PAPER,
     steady_light=True,
@@ -113,8 +115,8 @@ THESIS: Final = msgspec.structs.replace(
     density_recognizer=True,
     stick_lifting=True,
 )
-"""Demir 2006, as printed from the silhouette on: its own threshold has no value (T8), and it names
-no postures."""
+"""Demir 2006, as printed from the silhouette on: its own threshold has no value (T8), and it
+names no postures."""
 
 METHODS: Final[dict[Mode, Method]] = {"default": DEFAULT, "paper": PAPER, "thesis": THESIS}
-"""By the names that settings and commands use."""
+"""The named methods of settings and commands."""

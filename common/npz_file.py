@@ -1,4 +1,4 @@
-"""Arrays in an npz file: no pickle, written whole or not at all, read with a bound."""
+"""Arrays in npz files: no pickle, written completely or not at all, read with a size limit."""
 
 import tokenize
 import zipfile
@@ -13,27 +13,27 @@ from numpy.typing import NDArray
 from common.atomic_file import replacing
 
 Arrays = dict[str, NDArray[Any]]
-"""What an npz file holds, by name."""
+"""The arrays of an npz file, by name."""
 Facts = dict[str, Any]
-"""What a summary, a report or an answer says, by name: all that JSON holds."""
+"""A JSON object: a summary, a report or an answer, by name."""
 
 DAMAGE: Final = (
     *(ValueError, KeyError, EOFError, RecursionError, MemoryError, NotImplementedError),
     *(tokenize.TokenError, zipfile.BadZipFile, zlib.error, RuntimeError),
 )
-"""What reading a damaged or foreign archive or array raises."""
+"""Exceptions of reading a damaged or foreign archive or array."""
 
 
 class DamagedFile(ValueError):
-    """A file that holds no arrays that can be read: the text says why, and does not name it."""
+    """A file without readable arrays: the text says why, and does not name the file."""
 
 
 def read_arrays(path: Path, most_bytes: int) -> Arrays:
     """All arrays of a file.
 
     Args:
-        path: Of the file.
-        most_bytes: A file that is larger unpacked is refused before it is.
+        path: The npz file.
+        most_bytes: Largest size after unpacking; a larger file is refused before it is unpacked.
 
     Raises:
         OSError: When the file cannot be read.
@@ -52,10 +52,10 @@ def read_arrays(path: Path, most_bytes: int) -> Arrays:
 
 
 def write_arrays(path: Path, arrays: Mapping[str, NDArray[Any]]) -> None:
-    """Write arrays, and the folder if there is none; the same arrays give the same bytes.
+    """Write arrays, and create the folder where it is missing; the same arrays give the same bytes.
 
     Raises:
-        OSError: When the file cannot be written; what stood there before is untouched.
+        OSError: When the file cannot be written; the old file is unchanged then.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
     with replacing(path) as new, new.open("wb") as file:

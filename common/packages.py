@@ -1,4 +1,4 @@
-"""Our packages by the names that they have here: ten in a checkout, one in the wheel."""
+"""The names of our packages: ten at the top of a checkout, one in the wheel."""
 
 from pathlib import Path
 from typing import Final
@@ -11,6 +11,6 @@ PACKAGES: Final = (
         *("recognizer", "runtime", "synth", "tritrack", "viewer"),
     )
 )
-"""Names at the top that are ours: `hatch_build.py` moves all of them below one."""
+"""The packages; `hatch_build.py` moves all of them into one in the wheel."""
 ROOT: Final = Path(__file__).resolve().parents[__name__.count(".")]
-"""Folder of PACKAGES: the checkout, or `site-packages`."""
+"""The folder that holds PACKAGES: the checkout, or `site-packages`."""

@@ -1,4 +1,5 @@
-"""Digests of our sources: of all of them, and of those that one module's compiled code rests on."""
+"""Digests of our sources: of all together, and of those that one module's compiled code depends
+on."""
 
 import hashlib
 import os
@@ -13,22 +14,22 @@ from common.packages import PACKAGES, ROOT
 IMPORTED: Final = re.compile(
     rb"^[ \t]*(?:from[ \t]+([\w.]+)[ \t]+import[ \t]*(\([^)]*\)|[^\n]+)|import[ \t]+([^\n]+))", re.M
 )
-"""An import statement wherever it stands: module and names, or modules."""
+"""A regular expression for import statements anywhere: module and names, or modules."""
 WORD: Final = re.compile(rb"[\w.]+")
 
 
 class Source(NamedTuple):
-    """What is kept of a file: its digest, and which of our modules it imports."""
+    """Cached facts of a file: its digest, and which of our modules it imports."""
 
     digest: bytes
     imports: tuple[str, ...]
 
 
 def digest_of(root: Path) -> str:
-    """Digest of every source of ours, 32 hexadecimal digits; takes 10 ms.
+    """Digest of all our sources, 32 hexadecimal digits; takes 10 ms.
 
     Args:
-        root: Folder of PACKAGES.
+        root: The folder that holds PACKAGES.
     """
     digest = hashlib.sha256()
     above = len(os.path.join(root, ""))
@@ -46,9 +47,9 @@ def digest_of(root: Path) -> str:
 def module_digest(module: str) -> str:
     """Digest of a module and of all of ours that it imports, directly or not, 16 digits.
 
-    What a function compiles to depends on its own file, on the functions that it calls and the
-    constants that it reads: these are imported. An edit elsewhere leaves compiled code valid.
-    Taken as the module is imported, before an edit can come between what was read of it and this.
+    Compiled code depends on a function's file, on the functions that it calls and the constants
+    that it reads: these are imported. An edit elsewhere leaves compiled code valid. The digest is
+    taken when the module is imported, so that no edit comes between the import and the digest.
 
     Args:
         module: Its dotted name below ROOT, such as `common.raster.kernel`.
@@ -67,10 +68,10 @@ def module_digest(module: str) -> str:
 
 @cache
 def source_of(module: str) -> Source:
-    """A module's own source.
+    """The source of a module.
 
     Raises:
-        OSError: When there is none.
+        OSError: When it does not exist.
     """
     path = _path(module)
     if path is None:
@@ -80,7 +81,7 @@ def source_of(module: str) -> Source:
 
 
 def add(digest: "hashlib._Hash", name: str, content: bytes) -> None:
-    """Add a name and a content, each with its length: two files are never taken for one."""
+    """Add a name and a content to a digest, each with its length, so that no two files collide."""
     for part in (name.encode(), content):
         digest.update(len(part).to_bytes(8, "little"))
         digest.update(part)

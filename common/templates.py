@@ -1,4 +1,4 @@
-"""Pages written as Jinja2 templates, which lie in the folder `templates` of a package."""
+"""Pages from Jinja2 templates, in the folder `templates` of a package."""
 
 from collections.abc import Mapping
 from functools import cache
@@ -7,12 +7,12 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 
 
 def rendered(package: str, name: str, given: Mapping[str, object]) -> str:
-    """A template filled in: what is given is escaped, and a name that is not given is a fault.
+    """A template filled in: values are escaped, and a missing name is an error.
 
     Args:
-        package: Where the template lies, as imports name it.
-        name: Of its file.
-        given: What the template names.
+        package: The package that holds the template, as imports name it.
+        name: File name of the template.
+        given: Values for the template's names.
     """
     return _environment(package).get_template(name).render(given)
 

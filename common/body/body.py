@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 Vector = NDArray[np.float64]
-"""(n,) numbers: a body, a pose, a view, a place in metres; what uses it says how many."""
+"""(n,) numbers: a body, a pose, a view, or a place in metres; each use states n."""
 Floats = NDArray[np.float64]
-"""Numbers of more dimensions, (n, k) or (n, k, 3): rows of places, of frames, of weights."""
+"""Arrays of more dimensions, (n, k) or (n, k, 3): rows of places, of frames, of weights."""
 
 
 class Elliptic(msgspec.Struct, frozen=True, cache_hash=True, forbid_unknown_fields=True):
@@ -23,7 +23,7 @@ class Elliptic(msgspec.Struct, frozen=True, cache_hash=True, forbid_unknown_fiel
     height: float
 
     def __post_init__(self) -> None:
-        """Refuse what no body could have."""
+        """ValueError for lengths that no body has."""
         _refuse_unless_positive(self)
 
 
@@ -34,7 +34,7 @@ class Round(msgspec.Struct, frozen=True, cache_hash=True, forbid_unknown_fields=
     height: float
 
     def __post_init__(self) -> None:
-        """Refuse what no body could have."""
+        """ValueError for lengths that no body has."""
         _refuse_unless_positive(self)
 
 
@@ -96,8 +96,8 @@ JOINT_AXES: Final = {
     "r_knee": "x",
     "l_knee": "x",
 }
-"""The ten joints and the axes they turn about: six are spherical, four only bend (P6). The torso
-turns at the navel."""
+"""The ten joints and the axes they turn about: six are spherical, four are hinges (P6). The
+torso turns at the navel."""
 
 POSITION_NAMES: Final = ("x", "y", "z")
 """Place of the navel in the world: the first three entries of a pose."""
@@ -115,11 +115,11 @@ NECK: Final = POSE_INDEX["neck_x"]
 SHOULDER, ELBOW, HIP, KNEE = (
     POSE_INDEX[f"r_{joint}_x"] for joint in ("shoulder", "elbow", "hip", "knee")
 )
-"""Where the angles of a joint begin in a pose, of a limb's joint the right one's: the left one's
-follow. Compiled functions read them."""
+"""Index in a pose at which a joint's angles begin. For a limb it is the right one's; the left
+one's follow. Compiled functions read these."""
 
 FIXED_ANGLES: Final = ("torso_x", "torso_z", "neck_x", "neck_y", "neck_z")
-"""What the paper does not estimate: three angles of the head, two of the torso (P22)."""
+"""The angles that the paper does not estimate: three of the head, two of the torso (P22)."""
 
 ANGLE_NAMES: Final = tuple(name for name in DOF_NAMES if name not in FIXED_ANGLES)
 """The 17 angles that are estimated and published as BAPs (M17)."""
@@ -127,7 +127,7 @@ ANGLE_NAMES: Final = tuple(name for name in DOF_NAMES if name not in FIXED_ANGLE
 ANGLE_INDEX: Final = {name: i for i, name in enumerate(ANGLE_NAMES)}
 
 ANGLES_IN_POSE: Final = tuple(POSE_INDEX[name] for name in ANGLE_NAMES)
-"""Where the 17 angles stand in a pose."""
+"""Indices of the 17 angles in a pose."""
 
 JOINT_NAMES: Final = (
     "pelvis",
@@ -153,7 +153,7 @@ OTHER_SIDE: Final = np.array(
         for name in JOINT_NAMES
     ]
 )
-"""Where a list by JOINT_NAMES has the same joint of the other side."""
+"""For each index in JOINT_NAMES, the index of the same joint on the other side."""
 
 _BETWEEN: Final = {
     "upper_leg": ("hip", "knee"),
@@ -189,8 +189,8 @@ LIMITS_DEG: Final[dict[str, tuple[float, float]]] = {
     "r_knee_x": (-150.0, 0.0),
     "l_knee_x": (-150.0, 0.0),
 }
-"""Where joints can be (P30, P35; neck and waist: T6 by C7). The thesis's 150..210 for hips would
-forbid the paper's own side kick: outwards the hips are wider here."""
+"""Limits of the joint angles, degrees (P30, P35; neck and waist: T6 by C7). The thesis's
+150..210 for hips would forbid the paper's own side kick, so the hips are wider here."""
 
 REST_DEG: Final[dict[str, float]] = {
     "r_shoulder_z": 180.0,
@@ -204,7 +204,7 @@ REST_DEG: Final[dict[str, float]] = {
 theta_Y makes positive elbow flexion point outwards and up (C5)."""
 
 YAW_DEG: Final = (0.0, -90.0)
-"""Yaw of the trunk while viewer 1, or viewer 2, sees the facade (P49): the person faces that
+"""Yaw of the trunk while camera 1, or camera 2, sees the facade (P49): the person faces that
 camera. Silhouettes cannot tell this from its opposite (limitation L4)."""
 
 
@@ -246,16 +246,16 @@ def _refuse_unless_positive(part: Elliptic | Round) -> None:
 
 
 TILTED_DEG: Final = 30.0
-"""A trunk that leans by less counts as upright, degrees: nearly all people of the pictures that
-facings were learnt from lean by less."""
+"""A trunk that leans by less counts as upright, degrees. Nearly all people in the pictures that
+the facing network was trained on lean by less."""
 
 
 def lean_deg(right: float, down: float) -> float:
-    """How far a trunk leans, degrees clockwise; 0 where it is less than TILTED_DEG, or no trunk.
+    """Lean of a trunk in the picture, degrees clockwise; 0 below TILTED_DEG or without a trunk.
 
     Args:
-        right: From its pelvis to its neck, along the rows of the picture.
-        down: And along its columns.
+        right: From the pelvis to the neck, along the rows of the picture.
+        down: From the pelvis to the neck, along its columns.
     """
     found = math.degrees(math.atan2(right, -down))
     return found if abs(found) > TILTED_DEG and math.hypot(right, down) > 0.0 else 0.0

@@ -1,11 +1,11 @@
-"""Nose, heels, toes and knuckles: where they are if no camera sees them, by the rest of the body.
+"""Nose, heels, toes and knuckles: estimated from the other joints where no camera sees them.
 
-A foot stands square to its lower leg, toes a little out from where the hips face, and lies flat
-where it would else pass through the floor; a hand goes on along its forearm; the nose is ahead of
-the head's axis. Lengths are shares of the stature. Source: Drillis & Contini 1966, as in Winter,
-Biomechanics and Motor Control of Human Movement, fig. 4.1 (foot 0.152, ankle 0.039 above the sole,
-chin 0.870, eyes 0.936); de Leva 1996 (wrist to third knuckle 0.047, mean of women and men); ANSUR
-II (depth of the head 0.113); Perry & Burnfield, Gait Analysis (toes 7 degrees out).
+A foot stands square to its lower leg, with the toes a little outward of where the hips face; it
+lies flat where it would otherwise pass through the floor. A hand continues its forearm. The nose is
+ahead of the head's axis. Lengths are shares of the stature. Source: Drillis & Contini 1966, as in
+Winter, Biomechanics and Motor Control of Human Movement, fig. 4.1 (foot 0.152, ankle 0.039 above
+the sole, chin 0.870, eyes 0.936); de Leva 1996 (wrist to third knuckle 0.047, mean of women and
+men); ANSUR II (depth of the head 0.113); Perry & Burnfield, Gait Analysis (toes 7 degrees out).
 """
 
 import math
@@ -17,15 +17,15 @@ from numpy.typing import NDArray
 from common.body.body import JOINT_NAMES
 
 EXTREMITY_NAMES: Final = ("nose", "l_heel", "l_toe", "l_knuckle", "r_heel", "r_toe", "r_knuckle")
-"""The landmarks that follow the 15 in `poses.npz`: the nose's tip, where heels bear, the tips of
-the big toes, the knuckles of the middle fingers."""
+"""The landmarks that follow the 15 in `poses.npz`: the tip of the nose, the heels where they
+bear, the tips of the big toes, the knuckles of the middle fingers."""
 ALL_JOINT_NAMES: Final = JOINT_NAMES + EXTREMITY_NAMES
 EXTREMITY_LINES: Final = tuple(
     (ALL_JOINT_NAMES.index(f"{side}_{start}"), ALL_JOINT_NAMES.index(f"{side}_{end}"))
     for side in "lr"
     for start, end in (("wrist", "knuckle"), ("ankle", "heel"), ("ankle", "toe"), ("heel", "toe"))
 )
-"""Hands and feet as strokes: places in ALL_JOINT_NAMES of both ends of each."""
+"""Hands and feet as line segments: indices in ALL_JOINT_NAMES of both ends of each."""
 
 FOOT_SHARE: Final = 0.152
 HEEL_OF_FOOT: Final = 0.24
@@ -34,11 +34,12 @@ AHEAD_SHARE, BEHIND_SHARE = (1.0 - HEEL_OF_FOOT) * FOOT_SHARE, HEEL_OF_FOOT * FO
 SOLE_SHARE: Final = 0.010
 """Height of heel and toe over the floor while they stand, statures: half as thick as a toe."""
 DOWN_SHARE: Final = 0.039 - SOLE_SHARE
-"""How far both lie below the ankle."""
+"""How far heel and toe lie below the ankle, statures."""
 TOES_OUT: Final = math.tan(math.radians(7.0))
 KNUCKLE_SHARE: Final = 0.047
 NOSE_DOWN_SHARE, NOSE_AHEAD_SHARE = 1.0 - (0.870 + 0.936) / 2, 0.113 / 2 + 0.012
-"""From the top of the head, which is above the middle of its depth; a nose stands out by 0.012."""
+"""Height of the nose below the crown and depth ahead of the head's axis, statures. The crown is
+above the middle of the head's depth; the nose protrudes by 0.012."""
 
 _AT: Final = {name: i for i, name in enumerate(JOINT_NAMES)}
 _SIDES: Final = {
@@ -54,8 +55,8 @@ def extremities(joints_m: Places, stature_m: float) -> Places:
     """Places (..., 7, 3) of EXTREMITY_NAMES, metres.
 
     Args:
-        joints_m: (..., 15, 3) of JOINT_NAMES, in the world; where they are NaN, so are these.
-        stature_m: From sole to crown.
+        joints_m: (..., 15, 3) of JOINT_NAMES, in the world; NaN gives NaN.
+        stature_m: Height from sole to crown.
     """
     hips, knees, ankles, elbows, wrists = (joints_m[..., at, :] for at in _SIDES.values())
     left = _unit(hips[..., 0, :] - hips[..., 1, :])
@@ -85,11 +86,11 @@ def _feet(knees: Places, ankles: Places, left: Places, stature_m: float) -> tupl
 
 
 def _flat(ahead: Places, ankle_shares: Places) -> Places:
-    """Where a foot points whose heel and toe stay above the floor.
+    """Direction of a foot whose heel and toe stay above the floor.
 
     Args:
-        ahead: (..., 3) unit length.
-        ankle_shares: (...) height of the ankle in statures.
+        ahead: (..., 3) wanted direction, unit length.
+        ankle_shares: (...) height of the ankle, statures.
     """
     room = ankle_shares - SOLE_SHARE
     toe, heel = math.hypot(AHEAD_SHARE, DOWN_SHARE), math.hypot(BEHIND_SHARE, DOWN_SHARE)
@@ -110,6 +111,6 @@ def _unit(along: Places) -> Places:
 
 
 def _cross(a: Places, b: Places) -> Places:
-    """What np.cross gives of (..., 3), in less time where there are few."""
+    """Cross product of (..., 3); faster than np.cross for few vectors."""
     one, other = [1, 2, 0], [2, 0, 1]
     return a[..., one] * b[..., other] - a[..., other] * b[..., one]

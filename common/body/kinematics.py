@@ -90,13 +90,13 @@ def _hang_hinge(frames: Floats, upper: int, length: float, angle_deg: float) -> 
 
 @compiled
 def hang_limbs(body: Vector, pose: Vector, limbs: int, frames: Floats) -> None:
-    """Write the frames of some limbs, not the trunk's: what they hang on is placed already.
+    """Write the frames of some limbs; the trunk's frame must be there already.
 
     Args:
         body: Body vector.
         pose: The 25 motion parameters.
-        limbs: Bits of the limbs to be placed.
-        frames: (10, FRAME); those of the other limbs are left alone.
+        limbs: The limbs to place, as bits.
+        frames: (10, FRAME); the rows of other limbs are left as they are.
     """
     if limbs >> HEAD & 1:
         _hang_ball(frames, HEAD, 0.0, body[TORSO_HEIGHT], pose, NECK)
@@ -123,8 +123,8 @@ def place_limbs(body: Vector, pose: Vector, limbs: int, frames: Floats) -> None:
     Args:
         body: Body vector.
         pose: The 25 motion parameters.
-        limbs: Bits of the limbs that are wanted; a lower limb's upper limb is placed too.
-        frames: The others of its rows are left alone; row 0 is always written.
+        limbs: The wanted limbs, as bits; a lower limb's upper limb is placed too.
+        frames: (10, FRAME); row 0 is always written, rows of other limbs are left as they are.
     """
     for i in range(3):
         frames[TORSO, i] = pose[i]
@@ -174,7 +174,7 @@ def joints(body: Vector, pose: Vector) -> Floats:
 
 @compiled
 def _along(frames: Floats, body: Vector, upper: int, distance_m: float, i: int) -> float:
-    """Coordinate i of the point so far along an upper limb and the lower one that follows it."""
+    """Coordinate i of the point at a given length along an upper limb and its lower limb."""
     beyond_m = distance_m - body[_LENGTH_AT[upper]]
     if beyond_m <= 0.0:
         return frames[upper, i] + distance_m * frames[upper, 4 + 3 * i]

@@ -53,35 +53,36 @@ class Fit(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True)
 
 
 class Landmarks(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Where one view's picture itself shows the joints, whatever source told it."""
+    """The joints that one view's picture shows, from any landmark source."""
 
     joints_px: tuple[Pixel, ...]
-    """JOINT_NAMES order, pixels of the reported silhouette: its first pixel's centre is (0.5, 0.5).
-    What is not seen stands anywhere, with confidence 0."""
+    """JOINT_NAMES order, pixels of the reported silhouette: the centre of its first pixel is
+    (0.5, 0.5). A joint that is not seen has any place and confidence 0."""
     confidence: tuple[float, ...]
-    """JOINT_NAMES order, in [0, 1]: how probably each is less than 0.03 statures off (50 mm), where
-    left and right are not exchanged: that is another question, and the facing tells more of it."""
+    """JOINT_NAMES order, in [0, 1]: probability that the joint is less than 0.03 statures off
+    (50 mm), left-right exchange apart; the facing helps to decide that."""
     facing_deg: float = 0.0
     """Which way the person faces: 0 towards this camera, 90 to the right of its picture, in
-    (-180, 180]. About the vertical; about the trunk where that leans by more than 30 degrees in the
-    picture: as if the picture were turned until it is upright."""
+    (-180, 180]. The axis is the vertical; where the trunk leans by more than 30 degrees in the
+    picture it is the trunk, as if the picture were turned upright."""
     facing_confidence: float = 0.0
-    """How probably that is less than 45 degrees off, in [0, 1]; 0: the source does not tell."""
+    """Probability that the facing is less than 45 degrees off, in [0, 1]; 0: the source gives
+    none."""
     extremities_px: tuple[Pixel, ...] = ()
     """EXTREMITY_NAMES order, as joints_px; empty: the source does not look for them."""
     extremities_confidence: tuple[float, ...] = ()
     """EXTREMITY_NAMES order, as confidence."""
     second_px: tuple[Pixel, ...] = ()
-    """Where else each joint may be, as joints_px; empty: the source tells one place alone."""
+    """Second candidate for each joint, as joints_px; empty: the source gives one place alone."""
     second_confidence: tuple[float, ...] = ()
-    """How probably it is there instead, as confidence."""
+    """Probability of the second candidate, as confidence."""
 
 
 class Search(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """What a viewer's search for the pose found in one silhouette (sections 3.4 and 3.5)."""
 
     root_px: Pixel
-    """Where it has the navel in the picture."""
+    """Where the search has the navel in the picture, pixels."""
     angles_deg: dict[str, float]
     """The angles that this view estimates; names as in ANGLE_NAMES."""
     squatting: bool
@@ -101,9 +102,9 @@ class Observation(
     """The viewer's own number of the person, the same from frame to frame."""
     width: int
     height: int
-    """Of the picture that the silhouette is of, pixels."""
+    """Size of the picture that the silhouette belongs to, pixels."""
     silhouette: bytes
-    """`pack(mask)`: the region and nothing else of the picture."""
+    """`pack(mask)`: the silhouette's box and nothing else of the picture."""
     box: Box
     area_px: int
     cut: bool = False
@@ -111,14 +112,14 @@ class Observation(
     landmarks: Landmarks | None = None
     """None where the source of landmarks sees no person here, or there is none."""
     vote: Facing = "facade"
-    """What this view alone takes itself for (P26)."""
+    """What this view alone takes itself for: facade or flank (P26)."""
     upper_body_px: float = 0.0
     """W_u-body: width of the upper body, the evidence behind `vote` (P25)."""
     thresholds_px: tuple[float, float] = (0.0, 0.0)
-    """th_low and th_high that the vote was held against."""
+    """th_low and th_high that W_u-body was compared with."""
     measure: Measure | None = None
     refusal: str = ""
-    """Why the posture is not the opening posture, where it is not."""
+    """Why this posture is not the opening posture; "" where it is."""
     search: Search | None = None
     """The pose, where this view searched for it."""
     stick: Fit | None = None

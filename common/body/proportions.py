@@ -34,10 +34,10 @@ TORSO_DEPTH_SHARE: Final = 0.6
 
 
 def thesis_bdp(stature: float) -> Bdp:
-    """The thesis's proportions at a stature: what is known of a body before it is measured.
+    """The thesis's proportions scaled to a stature: the body model before any measurement.
 
     Args:
-        stature: Height from sole to crown, in the unit that the lengths shall have.
+        stature: Height from sole to crown, in the unit wanted for the lengths.
 
     Source: Demir 2006, tables 3.1 and 3.2 (T4, T5, M18); trunk depth: TORSO_DEPTH_SHARE.
     """
@@ -67,16 +67,17 @@ def thesis_bdp(stature: float) -> Bdp:
 
 
 SHOULDER_DROP: Final = 0.45
-"""How far a shoulder lies below the top of the trunk, in long radii of the trunk (P18)."""
+"""Depth of a shoulder below the top of the trunk, in long radii of the trunk (P18)."""
 
 SHOULDERS_APART: Final = 0.20
-"""Between the joint centres of the shoulders, in statures: acromia are 0.23 apart (ANSUR II), the
-centres some 15 mm a side further in."""
+"""Distance between the shoulders' joint centres, statures: acromia are 0.23 apart (ANSUR II),
+the centres some 15 mm further in on each side."""
 ELBOW_SHARE, WRIST_SHARE = 0.186 / 0.415, 0.332 / 0.415
-"""Where elbow and wrist lie between the shoulder's joint centre and the tip of a straight arm. The
-cylinders end where the paper cuts the silhouette (arms in halves, trunk to legs 4 : 6), joints
-where bodies bend: the published landmarks lie on the cylinders at mean adult lengths (upper arm
-0.186 statures, forearm 0.146, hand 0.108, of which the outer quarter is too thin to be seen)."""
+"""Where elbow and wrist lie between the shoulder's joint centre and the tip of a straight arm,
+as shares. The cylinders end where the paper cuts the silhouette (arms in halves, trunk to legs 4
+: 6); joints lie where bodies bend. So the published landmarks lie on the cylinders at mean adult
+lengths (upper arm 0.186 statures, forearm 0.146, hand 0.108, of which the outer quarter is too
+thin to be seen)."""
 BONE_SHARES: Final = {
     "trunk": 0.322,
     "head": 0.137,
@@ -87,8 +88,8 @@ BONE_SHARES: Final = {
     "shoulders": 0.203,
     "hips": 0.092,
 }
-"""From joint to joint as landmarks show them, in statures; the trunk from pelvis to neck, the head
-from there to the crown, shoulders and hips from side to side."""
+"""Lengths between joints as landmarks show them, statures: the trunk from pelvis to neck, the
+head from neck to crown, shoulders and hips from side to side."""
 HIP_SHARE, KNEE_SHARE, ANKLE_SHARE = 0.530, 0.285, 0.039
 """Heights of hip, knee and ankle above the sole, in statures."""
 
@@ -96,39 +97,41 @@ HIP_SHARE, KNEE_SHARE, ANKLE_SHARE = 0.530, 0.285, 0.039
 PER_ELLIPTIC, PER_ROUND = 3, 2
 """Lengths of a cylinder: two radii and a height, or an arm's radius and height."""
 LENGTHS: Final = 26
-"""A body vector begins with the BDPs in the order of LIMBS. Of limbs, the right one's place."""
+"""Index at which a limb begins in a body vector, which starts with the BDPs in the order of
+LIMBS; of paired limbs, the right one."""
 TORSO_RADIUS, TORSO_HEIGHT, HEAD_HEIGHT = 0, 2, 5
 UPPER_LEG_RADIUS, UPPER_LEG_HEIGHT, LOWER_LEG_HEIGHT = 6, 8, 14
 ARMS: Final = 18
-"""Where the arms' lengths begin: the first is a radius."""
+"""Index of the arms' lengths; the first is a radius."""
 UPPER_ARM_HEIGHT, LOWER_ARM_HEIGHT = 19, 23
 SHOULDER_ASIDE, SHOULDER_UP, HIP_ASIDE = 26, 27, 28
-"""Shoulder and hip from the navel, in body axes, both sides alike."""
+"""Shoulder and hip relative to the navel, in body axes, both sides alike."""
 ELBOW_ALONG, WRIST_ALONG, KNEE_ALONG, ANKLE_ALONG = 29, 31, 33, 35
-"""How far joints lie from the shoulder or hip along the straight limb, right then left each."""
+"""Distance of elbow, wrist, knee and ankle from the shoulder or hip along the straight limb,
+right then left."""
 HIPS_UP: Final = 37
-"""How far the anatomical hips lie above the navel."""
+"""Height of the anatomical hips above the navel."""
 SHOULDER_INSET: Final = 38
-"""How far the joint centres of the shoulders, and with them the arms' landmarks, lie within the
-cylinders'."""
+"""How far the shoulders' joint centres, and the arms' landmarks with them, lie inside the
+cylinders' shoulders."""
 BODY: Final = 39
-"""Numbers of a body vector."""
+"""Length of a body vector."""
 
 
 def body_vector(bdp: Bdp) -> Vector:
-    """The body as the kernel wants it, (BODY,): its lengths, where limbs hang, where joints lie."""
+    """The body as the kernel reads it, (BODY,): lengths, where limbs hang, where joints lie."""
     return np.array(_body_numbers(bdp))
 
 
 @lru_cache(maxsize=64)
 def _body_numbers(bdp: Bdp) -> tuple[float, ...]:
-    """The same numbers: a body hardly changes from frame to frame."""
+    """The same array, cached: a body hardly changes from frame to frame."""
     return tuple(attached(np.array(bdp.lengths())).tolist())
 
 
 @compiled
 def attached(lengths: Vector) -> Floats:
-    """The body vector (BODY,) of its LENGTHS lengths."""
+    """The body vector (BODY,) for its LENGTHS lengths."""
     body = np.empty(BODY)
     body[:LENGTHS] = lengths
     radius, leg = lengths[TORSO_RADIUS], lengths[UPPER_LEG_HEIGHT] + lengths[LOWER_LEG_HEIGHT]

@@ -10,17 +10,18 @@ from common.body.proportions import THESIS_DIAMETERS, THESIS_RATIOS
 from common.compiled import compiled
 
 SIDES: Final = ("r", "l")
-"""r is on the left of the picture: where the right is of a person who faces the camera (T10)."""
+"""LIMBS names; r is on the left of the picture, as a person's right who faces the camera (T10)."""
 
 X, Y, STATURE, BREADTH, ANGLE, RATIO, GIRTH = 0, 1, 2, 3, 4, 14, 24
-"""A stick pose: pelvis (px, rows down), stature (px), breadth of the trunk seen over its breadth
-from the front, then an angle (degrees, 0 to the right, 90 up, as in table 3.3) and a
-foreshortening ratio for each of LIMBS, and how thick limbs are, clothes included, over those of
-the proportions."""
+"""A stick pose: pelvis (px, rows down), stature (px), apparent breadth of the trunk over its
+frontal breadth, then an angle (degrees, 0 to the right, 90 up, as in table 3.3) and a
+foreshortening ratio for each of LIMBS, and the thickness of limbs, clothes included, over that
+of the proportions."""
 POSE_SIZE: Final = 25
 
 TORSO, HEAD, SHOULDER_LINE, HIP_LINE = 0, 1, 10, 11
-"""Segments that things hang on; the two lines follow the ten limbs."""
+"""Indices of the segments that others hang on; two lines, shoulders and hips, follow the ten
+limbs."""
 CHAINS: Final = ((6, 8), (7, 9), (2, 4), (3, 5))
 """Upper and lower limb: both arms, both legs, r before l."""
 
@@ -32,15 +33,17 @@ class Stickman(NamedTuple):
     """Proportions, in statures."""
 
     lengths: Vector
-    """(13,): of LIMBS; then half the shoulders, how far they lie below the neck, half the hips."""
+    """(13,): lengths of LIMBS; then half the shoulders, their depth below the neck, half the
+    hips."""
     parts: Vector
-    """(n, 6): segment, share of it where the part begins and ends, both radii, kind (FLAT ..)."""
+    """(n, 6): segment, the shares of it at which the part begins and ends, both radii, kind
+    (FLAT ..)."""
     depth: float
     """Depth of the trunk over its breadth."""
 
 
 FLAT, ROUND, FLAT_WIDE, ROUND_WIDE = 0.0, 1.0, 2.0, 3.0
-"""Kinds of part: ends flat or round; wide ones get narrower as the trunk turns."""
+"""Kinds of part: flat or round ends; wide parts get narrower as the trunk turns."""
 
 
 def _thesis() -> Stickman:
@@ -55,9 +58,9 @@ def _thesis() -> Stickman:
 
 
 def _adult() -> Stickman:
-    """Joints where adults bend; parts shaped as clothed silhouettes are.
+    """Joints at anatomical places; parts shaped as clothed silhouettes are.
 
-    Lengths and radii were read off two performers (docs/measurements.md).
+    Lengths and radii were measured on two people (docs/measurements.md).
     """
     upper_arm, forearm, thigh, shin = 0.157, 0.140, 0.252, 0.240
     lengths = [0.322, 0.143, thigh, thigh, shin, shin, upper_arm, upper_arm, forearm, forearm]
@@ -87,7 +90,7 @@ def place_segments(lengths: Vector, pose: Vector, ends: Floats) -> None:
     Args:
         lengths: (13,) of a Stickman.
         pose: (POSE_SIZE,).
-        ends: (12, 4), written: x and y of the near and of the far end, px.
+        ends: (12, 4), written: x and y of the near end and of the far end, px.
     """
     size = pose[STATURE]
     angle = np.radians(pose[ANGLE])
@@ -123,7 +126,7 @@ def place_segments(lengths: Vector, pose: Vector, ends: Floats) -> None:
 
 @compiled
 def place_chain(upper: int, lengths: Vector, pose: Vector, ends: Floats) -> None:
-    """The same for an upper limb and the lower limb that hangs on it; the trunk is placed."""
+    """The same for one upper limb and its lower limb; the trunk's ends must be there already."""
     line, side = (SHOULDER_LINE, upper - 6) if upper >= 6 else (HIP_LINE, upper - 2)
     _hang(ends, upper, ends[line, 2 * side], ends[line, 2 * side + 1], lengths, pose)
     _hang(ends, upper + 2, ends[upper, 2], ends[upper, 3], lengths, pose)
@@ -151,12 +154,12 @@ def standing(x_px: float, pelvis_y_px: float, stature_px: float) -> Vector:
 
 
 def pose_of(man: Stickman, joints: NDArray[np.float64], stature_px: float) -> Vector:
-    """The stick pose, (POSE_SIZE,), of joints as `joints_px` gives them, limbs of usual girth.
+    """The stick pose, (POSE_SIZE,), for joints as `joints_px` returns them, limbs of usual girth.
 
     Args:
-        man: Proportions.
+        man: The body's proportions.
         joints: (15, 2) px, JOINT_NAMES, r on the left of the picture.
-        stature_px: Height that the body would have standing upright.
+        stature_px: Height that the body would have standing upright, pixels.
     """
     pose = np.ones(POSE_SIZE)
     pose[[X, Y, STATURE]] = *joints[0], stature_px

@@ -1,4 +1,4 @@
-"""The bus of a room: what a process may ask of it, and how a live one is opened."""
+"""The bus of a site: the interface that a process uses, and how a live bus is opened."""
 
 import json
 import logging
@@ -21,23 +21,26 @@ from common.bus.messages import Message
 from common.config.part_settings import BusSettings
 
 LEASE_MS: Final = 4000
-"""A process that hangs counts as gone after this, by Zenoh's own 10 s. One that was stopped for
-less goes on where it was: what was said to it meanwhile waits. Who is silent is known sooner."""
+"""Zenoh's lease, seconds (its own default is 10): a process silent for longer counts as gone.
+One that was stopped for less goes on as before, and the messages to it have waited. `Presence`
+notices silence sooner."""
 
 HANDSHAKE_MS: Final = 3000
-"""How long a peer that accepts a connection may take to prove that it is one of ours: over a link
-that is slow by 0.2 s each way, with keys, both need 2 s for that."""
+"""Seconds within which a connecting peer must prove that it is one of ours. Over a link of 0.2 s
+each way, with keys, both sides need 2 s."""
 
 ENVELOPE_BYTES: Final = 1 << 16
-"""What Zenoh's own words around a message may take. What is larger than both is dropped piece by
-piece as it comes: putting together a flood of it would cost a core."""
+"""Bytes of Zenoh's own framing around a message. Anything larger than message and framing is
+dropped in fragments as it arrives: reassembling a flood would cost a core."""
 
 QUEUED: Final = 16
-"""Messages that may wait for Zenoh's sending thread, its most; its own 2 are soon full."""
+"""Messages that may wait for Zenoh's sending thread: the largest value it accepts; its default 2
+fills at once."""
 
 PATIENCE_US: Final = 10_000
-"""How long a message may wait for room in a full queue before it is dropped. Zenoh's own 1 ms is
-less than a busy host lets its sending thread sleep; a link that is stuck is waited for once."""
+"""How long a message waits for room in a full queue before it is dropped. Zenoh's default of 1
+ms is shorter than a busy host may suspend its sending thread; for a blocked link the wait
+happens once."""
 
 RETRY_S: Final = 0.1
 """Pause between two tries to reach the hub."""
@@ -46,45 +49,48 @@ log = logging.getLogger(__name__)
 
 
 class BusError(RuntimeError):
-    """No bus: the text names the endpoint, the fault and the cure."""
+    """There is no bus: the text names the endpoint, the fault and the cure."""
 
 
 class Stopped(Exception):
-    """Whoever waited for the hub was told to end: nothing is wrong."""
+    """The process was asked to end while it waited for the hub; nothing is wrong."""
 
 
 class Bus(Protocol):
-    """A room's messages, as one process speaks and hears them.
+    """The messages of a site, as one process publishes and receives them.
 
-    A bus is closed by the `with` that opened it; all that it gave out ends with it.
+    The `with` that opened a bus closes it; everything that the bus handed out ends with it.
     """
 
     def publish(self, message: Message) -> None:
-        """Say a message to all who listen now; under congestion it waits a moment, then drops."""
+        """Publish a message to all current subscribers; under congestion it waits a moment, then
+        drops."""
 
     def subscribe(self, kind: type[Said]) -> Inbox[Said]:
-        """Hear every message of a kind that is said from now on."""
+        """Receive every message of a kind that is published from now on."""
 
     def keep(self, kind: type[Message]) -> None:
-        """Hold the newest published message of a kind for those who come late."""
+        """Keep the newest published message of a kind for processes that start later."""
 
     def latest(self, kind: type[Said], timeout_s: float) -> Said | None:
-        """The newest message of a kind, from whoever keeps it; None when nobody has one.
+        """The newest message of a kind, from the process that keeps it; None when no process has
+        one.
 
-        Subscribe first, ask then: what is said in between may come both ways.
+        Subscribe first, then ask: a message published in between may arrive both ways.
         """
 
     def answer(self, kind: type[Said], reply: Callable[[Said], Message]) -> None:
-        """Answer every question of a kind; `reply` must be quick: the bus's own thread runs it."""
+        """Answer every question of a kind. `reply` must be quick: it runs on the bus's own
+        thread."""
 
     def ask(self, question: Message, kind: type[Said], timeout_s: float) -> Said | None:
-        """The answer to a question, of the kind named; None when nobody gives one in time."""
+        """The answer to a question, of the named kind; None when no answer comes in time."""
 
     def announce(self, name: str) -> None:
-        """Let others know that the process of this name lives, until it closes its bus or dies."""
+        """Announce that the process of this name is alive, until it closes its bus or dies."""
 
     def watch_alive(self) -> Mailbox[Alive]:
-        """Hear who lives already, and who comes and goes."""
+        """Report which processes are alive already, and later each that comes or goes."""
 
 
 @contextmanager
@@ -93,7 +99,7 @@ def open_hub(settings: BusSettings, room: str) -> Iterator[LiveBus]:
 
     Raises:
         BusError: When the endpoint is taken or is none.
-        KeysError: When the settings name keys that are not there.
+        KeysError: When the settings name keys that do not exist.
     """
     try:
         session = zenoh.open(_config(settings, HUB, room))
@@ -116,11 +122,11 @@ def open_client(
 ) -> Iterator[LiveBus]:
     """The bus of any other process; waits up to `give_up_s` for the hub, or until `stop` is set.
 
-    Where the settings name keys it speaks as `part`, and no more than that may.
+    Where the settings name keys, it connects with the certificate of `part` and has its rights.
 
     Raises:
-        BusError: When nobody answers at the endpoint in time.
-        KeysError: When the settings name keys that are not there.
+        BusError: When the hub does not answer at the endpoint in time.
+        KeysError: When the settings name keys that do not exist.
         Stopped: When it was stopped before the hub was there.
     """
     until_s = time.monotonic() + give_up_s
@@ -132,7 +138,7 @@ def open_client(
 
 
 def unanswered(settings: BusSettings, waited_s: float) -> BusError:
-    """What is said where the hub did not answer for so long."""
+    """The message for a hub that did not answer within the given time."""
     keys = f", or look at the keys: tritrack doctor --keys {settings.keys}"
     return BusError(
         f"nobody answers at {settings.endpoint} after {waited_s:g} s: start the integrator "
@@ -153,10 +159,10 @@ def _bus(session: Any, room: str, run: str) -> Iterator[LiveBus]:
 
 
 def _close(session: Any) -> None:
-    """Close a session: one that is open keeps its process from ending.
+    """Close a session: an open one keeps its process from ending.
 
-    Zenoh gives up after ten seconds where a link is slow or loses packets (its issue 2675); all
-    has been said by then.
+    Zenoh raises after ten seconds on a slow or lossy link (its issue 2675); by then everything was
+    sent.
     """
     try:
         session.close()
@@ -180,7 +186,7 @@ def _reach(
 
 
 def _config(settings: BusSettings, part: Part, room: str) -> zenoh.Config:
-    """A session that hears and speaks at one endpoint and nowhere else."""
+    """A session that listens and connects at one endpoint and nowhere else."""
     zenoh.init_log_from_env_or("error")
     hub, endpoint = part == HUB, settings.endpoint
     own: dict[str, Any] = {

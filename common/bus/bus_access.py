@@ -1,4 +1,4 @@
-"""Who may say what on a bus with keys: the table of parts, and the hub's rules made of it."""
+"""Access rules of a bus with keys: the table of rights by part, and the hub's configuration."""
 
 from typing import Any, Final, NamedTuple
 
@@ -10,10 +10,10 @@ from common.bus.messages import Guide, Message, Picture, Posture, View
 
 
 class Right(NamedTuple):
-    """What a part may do beside hearing all that is said in its room."""
+    """What a part may publish and ask; every part may subscribe to everything in its site."""
 
     process: str = ""
-    """Its name on the bus; "": it announces nothing."""
+    """The part's name on the bus; "": it does not announce itself."""
     says: tuple[type[Message], ...] = ()
     asks: tuple[type[Message], ...] = ()
     viewer: int = 0
@@ -28,10 +28,10 @@ RIGHTS: Final[dict[Part, Right]] = {
     "metrics": Right("metrics", (Pulse,)),
     "client": Right(),
 }
-"""Of all who connect; the hub itself is asked by nobody."""
+"""The rights of all that connect; nothing asks the hub itself."""
 
 KEPT: Final = (Guide, Cameras)
-"""Everybody may ask the hub for the newest of these."""
+"""The kinds whose newest message every part may ask the hub for."""
 
 HEARING: Final = ("declare_subscriber", "declare_liveliness_subscriber", "liveliness_query")
 SAYING: Final = ("put", "liveliness_token")
@@ -39,7 +39,7 @@ ALL: Final = (*HEARING, *SAYING, "delete", "query", "reply", "declare_queryable"
 
 
 def access_of(room: str) -> dict[str, Any]:
-    """What Zenoh's hub is told (`access_control`): what no rule allows is dropped as it comes."""
+    """Zenoh's `access_control` for the hub: what no rule allows is dropped on arrival."""
     everything = [f"tritrack/{room}/**"]
     kept = [TOPICS[kind].key.format(room=room) for kind in KEPT]
     rules = [

@@ -1,4 +1,4 @@
-"""The keys of a bus: which files each part needs, and how Zenoh is told of them."""
+"""The keys of a bus: which files each part needs, and Zenoh's settings for them."""
 
 from pathlib import Path
 from typing import Any, Final, Literal, NamedTuple, get_args
@@ -21,18 +21,18 @@ Part = Literal[
     "metrics",
     "client",
 ]
-"""Who speaks on a bus: the common name of a certificate. A client only listens."""
+"""A part that connects to a bus: the common name of its certificate. A client only listens."""
 
 PARTS: Final[tuple[Part, ...]] = get_args(Part)
 HUB: Final[Part] = "integrator"
-"""All others connect to it: its certificate is a server's."""
+"""The part that all others connect to: its certificate is a server's."""
 VIEWERS: Final[dict[ViewerNumber, Part]] = dict(
     enumerate((part for part in PARTS if part.startswith("viewer")), start=1)
 )
 PARTS_OF_EVERY_RUN: Final = tuple(
     part for part in PARTS if part not in ("client", *list(VIEWERS.values())[2:])
 )
-"""Whose keys are looked for before a run starts; the viewer of a third camera looks itself."""
+"""Parts whose keys are checked before a run starts; a third camera's viewer checks its own."""
 AUTHORITY: Final = "ca.pem"
 """The certificate that signed all others; every host of a run needs it."""
 
@@ -46,19 +46,19 @@ class KeyPair(NamedTuple):
 
     certificate: Path
     key: Path
-    """For the part alone: mode 0600."""
+    """Private: mode 0600, readable by the part alone."""
 
 
 def pair_of(folder: Path, part: Part) -> KeyPair:
-    """Where a part's files lie."""
+    """The paths of a part's files."""
     return KeyPair(folder / f"{part}.pem", folder / f"{part}.key")
 
 
 def refuse_missing(folder: Path, part: Part) -> None:
-    """Say which file a part lacks.
+    """Refuse keys with a missing file.
 
     Raises:
-        KeysError: When one is not there, or is not for us to read.
+        KeysError: When a file does not exist, or this user may not read it.
     """
     for path in (folder / AUTHORITY, *pair_of(folder, part)):
         try:
@@ -72,7 +72,7 @@ def refuse_missing(folder: Path, part: Part) -> None:
 
 
 def tls_of(folder: Path, part: Part) -> dict[str, Any]:
-    """What Zenoh is told of a part's keys (`transport/link/tls`); each side checks the other's.
+    """Zenoh's settings for a part's keys (`transport/link/tls`); each side checks the other's.
 
     Raises:
         KeysError: When a file is missing.

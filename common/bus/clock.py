@@ -1,4 +1,4 @@
-"""The room's clock as another host sees it: questions, answers, the quickest of them believed."""
+"""The room's clock as another host reads it: of several exchanges, the quickest is believed."""
 
 import threading
 import time
@@ -12,15 +12,15 @@ if TYPE_CHECKING:
     from common.bus.bus import Bus
 
 ASK_S: Final = 0.5
-"""How long an answer is waited for."""
+"""How long to wait for an answer, seconds."""
 EXCHANGES: Final = 5
-"""As many are enough to begin with."""
+"""Number of exchanges at the start."""
 
 AGAIN_S: Final = 2.0
-"""How long it is from one question to the next while a run goes on."""
+"""Seconds between two questions while a run goes on."""
 HISTORY: Final = 32
-"""How many exchanges are remembered: few enough that clocks do not drift apart meanwhile
-(50 ppm make 3 ms in a minute of a question every AGAIN_S; in an hour 180)."""
+"""Number of exchanges that are remembered. Clocks do not drift apart much within them: 50 ppm
+make 3 ms in a minute of a question every AGAIN_S, 180 ms in an hour."""
 
 
 class Exchange(NamedTuple):
@@ -29,30 +29,30 @@ class Exchange(NamedTuple):
     sent_s: float
     """When the question left, by this host's clock."""
     room_s: float
-    """What the room's clock said at the answer."""
+    """The room's clock when the answer was sent."""
     received_s: float
     """When the answer came, by this host's clock."""
 
     @property
     def round_trip_s(self) -> float:
-        """How long it took there and back."""
+        """Round-trip time, seconds."""
         return self.received_s - self.sent_s
 
 
 class Offset(NamedTuple):
-    """What to add to this host's clock to read the room's."""
+    """Offset to add to this host's clock to get the room's."""
 
     offset_s: float
     error_s: float
-    """It is at most this far off: half the round trip."""
+    """Largest possible error of the offset: half the round trip."""
 
 
 State = tuple[Exchange, ...]
-"""The exchanges of late, oldest first."""
+"""The latest exchanges, oldest first."""
 
 
 def exchanged(bus: "Bus", question: ClockQuestion) -> tuple[Exchange, ClockAnswer] | None:
-    """One question to the room's clock; None where nobody answers in time."""
+    """One question to the room's clock; None where no answer comes in time."""
     sent_s = time.monotonic()
     answer = bus.ask(question, ClockAnswer, ASK_S)
     if answer is None:
@@ -61,7 +61,7 @@ def exchanged(bus: "Bus", question: ClockQuestion) -> tuple[Exchange, ClockAnswe
 
 
 def asked(bus: "Bus") -> Offset:
-    """How far the room's clock is from this host's, asked now; 0 where nobody answers."""
+    """The room's clock minus this host's, measured now; 0 where no answer comes."""
     state, offset = init(), Offset(0.0, 0.0)
     for _ in range(EXCHANGES):
         told = exchanged(bus, ClockQuestion())
@@ -73,9 +73,9 @@ def asked(bus: "Bus") -> Offset:
 
 @contextmanager
 def followed(bus: "Bus", tell: Callable[[float], None], again_s: float = AGAIN_S) -> Iterator[None]:
-    """Ask on in a thread, and tell each new offset: two hosts' clocks drift apart.
+    """Measure the offset again and again in a thread, and pass on each new one: clocks drift.
 
-    While nobody answers, as where the integrator is started again, the last one holds.
+    While there is no answer, as when the integrator is restarted, the last offset holds.
     """
     over = threading.Event()
 
@@ -99,15 +99,15 @@ def followed(bus: "Bus", tell: Callable[[float], None], again_s: float = AGAIN_S
 
 
 def init() -> State:
-    """Nothing was asked yet."""
+    """No exchange yet."""
     return ()
 
 
 def step(state: State, exchange: Exchange) -> tuple[State, Offset]:
-    """Take an exchange in; say what is now believed.
+    """Add an exchange, and return the offset that is now believed.
 
-    The answer was given somewhere between question and receipt; in the middle is the guess that
-    errs by half the round trip at most, so the exchange with the least round trip is believed.
+    The answer was sent at some moment between question and receipt. Taking the middle errs by half
+    the round trip at most, so the exchange with the shortest round trip is believed.
     """
     state = (*state, exchange)[-HISTORY:]
     best = min(state, key=lambda one: one.round_trip_s)

@@ -1,4 +1,4 @@
-"""What processes tell each other of themselves and of the run."""
+"""Messages about processes and the run itself."""
 
 from typing import Annotated, Literal
 
@@ -9,7 +9,7 @@ from common.rig.camera import Rig
 
 
 class Pulse(Message, frozen=True, kw_only=True):
-    """How a process is doing, once a second and at its end."""
+    """The state of a process, published once a second and at its end."""
 
     process: str
     state: Literal["starting", "ready", "running", "ended", "restarting", "given up"]
@@ -20,10 +20,10 @@ class Pulse(Message, frozen=True, kw_only=True):
     dropped: int = 0
     guide_misses: int = 0
     hurried: int = 0
-    """Frames that came so late that a viewer told their outline alone."""
+    """Number of late frames that a viewer reported with the silhouette alone."""
     malformed: int = 0
     foreign: int = 0
-    """Messages that were dropped since they were not of this run."""
+    """Number of messages that were dropped because they came from another run."""
     late: int = 0
     latency_p50_ms: float = 0.0
     latency_p99_ms: float = 0.0
@@ -31,36 +31,36 @@ class Pulse(Message, frozen=True, kw_only=True):
 
 
 class Cameras(Message, frozen=True, kw_only=True):
-    """The rig that a run uses, once it is known, and again when it is changed."""
+    """The rig that a run uses, published once it is known and again at each change."""
 
     rig: Rig
     scale_source: ScaleSource
     calibration: int = 0
-    """How often it was changed: that of each body that is told by it."""
+    """Number of changes so far: bodies computed with this rig carry the same number."""
     late_s: float = 0.0
-    """By how much the times of view 2 are set back."""
+    """Seconds by which the times of view 2 are set back."""
 
 
 class Ended(Message, frozen=True, kw_only=True):
-    """A viewer's clip is over, or broke."""
+    """A viewer's clip has ended or failed."""
 
     viewer: ViewerNumber
     frames: int
     why: str = ""
-    """What broke; "" where it came to its end or was stopped."""
+    """The fault; "" where the clip ended normally or was stopped."""
 
 
 class ClockQuestion(Message, frozen=True, kw_only=True):
-    """Somebody asks what the room's clock says; a viewer, whether it may begin too."""
+    """A question: the room's clock, and for a viewer also whether it may begin."""
 
     viewer: ViewerNumber | None = None
-    """Who asks; None: somebody for whom no run waits."""
+    """The viewer that asks; None: a process that the run does not wait for."""
     ready: bool = False
-    """That viewer can begin."""
+    """The viewer is ready to begin."""
 
 
 class ClockAnswer(Message, frozen=True, kw_only=True):
-    """The room's clock at the moment of the answer, and the start if it is fixed."""
+    """The room's clock when the answer was sent, and the run's start if it is fixed."""
 
     now_s: float
     start_s: float | None = None
@@ -69,19 +69,19 @@ class ClockAnswer(Message, frozen=True, kw_only=True):
 Wish = Literal[
     "start", "stop", "record", "end_record", "save", "measure", "background", "front", "back"
 ]
-"""What a person at the page may ask of a run."""
+"""What a user at the page may ask of a run."""
 
 
 class Command(Message, frozen=True, kw_only=True):
-    """The person at the page wants something; whoever can do it does, and answers."""
+    """A user's command from the page; each process that can carry it out does so and answers."""
 
     what: Wish
 
 
 class Answer(Message, frozen=True, kw_only=True):
-    """What became of a command; each process that took part says so."""
+    """The outcome of a command, from each process that took part."""
 
     what: Wish
     well: bool
     text: Annotated[str, msgspec.Meta(max_length=400)]
-    """For the person, one sentence."""
+    """One sentence for the user."""

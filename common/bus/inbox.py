@@ -1,4 +1,4 @@
-"""What a process hears: checked on arrival, bounded, counted."""
+"""Received messages: checked on arrival, bounded, counted."""
 
 import logging
 from collections.abc import Callable
@@ -11,14 +11,15 @@ from common.bus.messages import Message
 from common.config.part_settings import MOST_SESSION
 
 QUESTIONS: Final[dict[type[Message], str]] = {ClockQuestion: "tritrack/{room}/clock"}
-"""Where each kind of question is answered."""
+"""The key on which each kind of question is answered."""
 
 BOUND: Final = 256
-"""Messages that wait for a reader: eight seconds of two viewers at 15 Hz; older ones are of no use
-to anyone."""
+"""Messages that may wait for a reader: eight seconds of two viewers at 15 Hz; older ones are of
+no use."""
 
 MOST_GAP: Final = 100_000
-"""Messages that a link may lose at once, two hours of them; a larger gap is nobody of ours."""
+"""Messages that a link may lose in one gap: two hours of them. A larger gap means another
+sender."""
 
 log = logging.getLogger(__name__)
 
@@ -31,14 +32,14 @@ class Alive(NamedTuple):
 
 
 class Inbox(Generic[Said]):
-    """Heard messages of one kind, oldest first; where only the newest counts, one a key."""
+    """Received messages of one kind, oldest first; where only the newest counts, one per key."""
 
     def __init__(self, kind: type[Said], room: str) -> None:
-        """Empty, for one kind of message in one room."""
+        """An empty inbox for one kind of message in one site."""
         self.malformed = 0
-        """How many payloads were refused."""
+        """Number of payloads that were refused."""
         self.foreign = 0
-        """How many messages were not of this run."""
+        """Number of messages of other runs."""
         self._kind = kind
         self._room = room
         self._missed = 0
@@ -47,7 +48,7 @@ class Inbox(Generic[Said]):
 
     @property
     def dropped(self) -> int:
-        """How many messages gave way to later ones, here or on the way, although each counts."""
+        """Number of messages lost, here or on the way, of a kind of which each one counts."""
         return self._mailbox.dropped + self._missed
 
     def take(self, timeout_s: float) -> Said | None:
@@ -59,11 +60,12 @@ class Inbox(Generic[Said]):
         return self._mailbox.drain()
 
     def close(self) -> None:
-        """Hear no more."""
+        """Stop receiving."""
         self._mailbox.close()
 
     def offer(self, key: str, payload: bytes) -> None:
-        """Take in what came on a key; what is no such message is counted and logged once."""
+        """Accept the payload received on a key; a malformed one is counted, and the first is
+        logged."""
         try:
             message = decode(payload, self._kind)
             if key_of(message, self._room) != key:
@@ -74,9 +76,9 @@ class Inbox(Generic[Said]):
         self._mailbox.put(message, slot=key if TOPICS[self._kind].newest_only else None)
 
     def count(self, key: str, number: int) -> None:
-        """Note the number of a message on its key: what is missing before it was lost on the way.
+        """Note the sequence number of a message on its key: missing numbers were lost on the way.
 
-        A lower one than the last is that of a speaker who was started again.
+        A number below the last one means that the sender was restarted.
         """
         if key not in self._numbers and len(self._numbers) == BOUND:
             return
@@ -86,14 +88,14 @@ class Inbox(Generic[Said]):
         self._numbers[key] = number
 
     def refuse_foreign(self, key: str, word: bytes) -> None:
-        """Count what came on a key from another run, or from nobody's; the first is logged."""
+        """Count a message on a key that belongs to another run or to none; the first is logged."""
         self.foreign += 1
         if self.foreign == 1:
             whose = repr(word[:MOST_SESSION]) if word else "none"
             log.warning("%s: dropped a message of another session: %s", key, whose)
 
     def refuse(self, key: str, why: MalformedMessage) -> None:
-        """Count what came on a key and is no such message; the first is logged."""
+        """Count a malformed payload on a key; the first is logged."""
         self.malformed += 1
         if self.malformed == 1:
             pattern = pattern_of(self._kind, self._room)
@@ -101,7 +103,7 @@ class Inbox(Generic[Said]):
 
 
 def checked(payload: bytes, kind: type[Said], where: str) -> Said | None:
-    """A question or an answer that can be trusted, or None after a line in the log."""
+    """A question or answer that passed the checks; None after a line in the log."""
     try:
         return decode(payload, kind)
     except MalformedMessage as error:
@@ -112,9 +114,9 @@ def checked(payload: bytes, kind: type[Said], where: str) -> Said | None:
 def answered(
     reply: Callable[[Said], Message], kind: type[Said], payload: bytes, where: str
 ) -> Message | None:
-    """What `reply` says to a question; None when either of them fails, which is logged.
+    """The payload with which `reply` answers a question; None when either fails, which is logged.
 
-    The bus's threads swallow exceptions, so a failing `reply` must end here and be seen.
+    The bus's threads swallow exceptions, so a failing `reply` is caught and logged here.
     """
     question = checked(payload, kind, where)
     if question is None:

@@ -1,4 +1,4 @@
-"""What the viewers report of one instant, in the order of the rig's cameras."""
+"""The views of one instant, in the order of the rig's cameras."""
 
 from collections.abc import Mapping
 from typing import TypeVar
@@ -9,24 +9,24 @@ from common.body.observation import Observation
 from common.bus.messages import View
 
 Seen = tuple[Observation | None, ...]
-"""A person as each camera sees them, in the rig's order; None where one does not."""
+"""One person in every camera, in the rig's order; None where a camera does not see them."""
 TwoSeen = tuple[Observation | None, Observation | None]
-"""The same of two cameras, for what takes two."""
+"""One person in two cameras, for methods that take two."""
 TwoViews = tuple[View | None, View | None]
-"""What two cameras report."""
+"""The views of two cameras."""
 
 Item = TypeVar("Item")
 
 
 class Instant(msgspec.Struct, frozen=True):
-    """What the viewers report of one instant."""
+    """The views of one instant."""
 
     views: tuple[View | None, ...]
-    """In the order of the rig's cameras, place n - 1 is camera n; None where it reports nothing."""
+    """In the order of the rig's cameras, index n - 1 is camera n; None where it sent no view."""
 
     @property
     def newest(self) -> View:
-        """The view whose frame was taken last; of an instant one at least is there."""
+        """The view whose frame was taken last; an instant has at least one."""
         return max((v for v in self.views if v is not None), key=lambda view: view.clock_s)
 
     @property
@@ -36,11 +36,11 @@ class Instant(msgspec.Struct, frozen=True):
 
 
 def instant_of(views: Mapping[int, View], cameras: int) -> Instant:
-    """The instant of views by their viewers' numbers, of a rig of so many cameras."""
+    """The instant for views by their viewers' numbers, in a rig of that many cameras."""
     return Instant(tuple(views.get(number) for number in range(1, cameras + 1)))
 
 
 def first_two(each: tuple[Item | None, ...]) -> tuple[Item | None, Item | None]:
-    """Of cameras 1 and 2, for what takes two; None where there is none."""
+    """The views of cameras 1 and 2, for methods that take two; None for a missing one."""
     first, second = (*each, None)[:2]
     return first, second

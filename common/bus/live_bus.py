@@ -1,4 +1,4 @@
-"""A room's messages over a Zenoh session."""
+"""The messages of a site over a Zenoh session."""
 
 import logging
 import threading
@@ -23,22 +23,23 @@ from common.bus.messages import Message, Picture
 from common.config.part_settings import MOST_SESSION
 
 AT_ONCE: Final = 4
-"""Newest-only samples that may wait for our own thread: two viewers speak at the same moment.
-Zenoh's default queue would serve ever older ones to a slow reader."""
+"""Newest-only samples that may wait for our own thread: two viewers publish at the same moment.
+Zenoh's default queue would give ever older ones to a slow reader."""
 
 NUMBER_BYTES: Final = 8
-"""Every message goes with its number on its key, so that who hears it can count what is lost on the
-way: under congestion Zenoh drops, and tells nobody. Behind the number stands the run's word."""
+"""Key expression that matches a sequence number and the run's word. Every message carries its
+number on its key, so that a receiver can count losses: under congestion Zenoh drops without
+notice."""
 
 log = logging.getLogger(__name__)
 
 
 class LiveBus:
-    """A Zenoh session in a room; see Bus for what each method promises."""
+    """A Zenoh session in a site; see Bus for each method's contract."""
 
     def __init__(self, session: Any, room: str, run: str = "") -> None:
-        """Speak and hear in `room` over an open session; those of the same run, where it has a
-        word."""
+        """Publish and receive in `room` over an open session; only messages of the same run
+        where it has a word."""
         self._session = session
         self._run = run.encode()
         self._room = room
@@ -51,7 +52,7 @@ class LiveBus:
         self._queryables: list[Any] = []
 
     def publish(self, message: Message) -> None:
-        """Say a message; see Bus."""
+        """Publish a message; see Bus."""
         key, payload = key_of(message, self._room), encode(message)
         with self._lock:
             if key not in self._publishers:
@@ -63,7 +64,7 @@ class LiveBus:
         self._publishers[key].put(payload, attachment=number + self._run)
 
     def subscribe(self, kind: type[Said]) -> Inbox[Said]:
-        """Hear a kind of message; see Bus."""
+        """Receive a kind of message; see Bus."""
         inbox = Inbox(kind, self._room)
         channel: Any = (
             zenoh.handlers.RingChannel(AT_ONCE)
@@ -79,7 +80,7 @@ class LiveBus:
                 inbox.refuse_foreign(key, said[NUMBER_BYTES:])
                 return
             try:
-                refuse_size(len(sample.payload))  # before it is copied: a flood costs least so
+                refuse_size(len(sample.payload))  # before it is copied: cheapest in a flood
             except MalformedMessage as error:
                 inbox.refuse(key, error)
             else:
@@ -125,12 +126,12 @@ class LiveBus:
         return self._get(key, kind, encode(question), timeout_s)
 
     def announce(self, name: str) -> None:
-        """Let others know that this process lives; see Bus."""
+        """Announce this process; see Bus."""
         key = f"tritrack/{self._room}/alive/{name}"
         self._tokens.append(self._session.liveliness().declare_token(key))
 
     def watch_alive(self) -> Mailbox[Alive]:
-        """Hear who comes and goes; see Bus."""
+        """Report which processes come and go; see Bus."""
         mailbox: Mailbox[Alive] = Mailbox(BOUND)
         subscriber = self._session.liveliness().declare_subscriber(
             f"tritrack/{self._room}/alive/*", zenoh.handlers.FifoChannel(BOUND), history=True
@@ -144,7 +145,7 @@ class LiveBus:
         return mailbox
 
     def close(self) -> None:
-        """End the threads, then let go of everything declared."""
+        """End the threads, then undeclare everything."""
         for subscriber, thread, box in self._heard:
             box.close()
             subscriber.undeclare()
@@ -168,7 +169,7 @@ class LiveBus:
     def _listen(
         self, subscriber: Any, hear: Callable[[Any], None], box: Inbox[Any] | Mailbox[Alive]
     ) -> None:
-        """Empty a channel into a bounded box of ours, until the subscriber is undeclared."""
+        """Drain a channel into our own bounded inbox, until the subscriber is undeclared."""
 
         def drain() -> None:
             for sample in subscriber:
@@ -205,5 +206,5 @@ class LiveBus:
 
 
 def _word_of(told: Any) -> bytes:
-    """The run's word that goes with a question or its answer."""
+    """The run's word that travels with a question or its answer."""
     return told.attachment.to_bytes() if told.attachment is not None else b""

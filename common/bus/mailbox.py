@@ -1,4 +1,5 @@
-"""A bounded queue between a thread that hears and one that works: the oldest gives way, counted."""
+"""A bounded queue between a receiving and a working thread: the oldest item is dropped and
+counted."""
 
 import itertools
 import threading
@@ -9,12 +10,12 @@ Item = TypeVar("Item")
 
 
 class Mailbox(Generic[Item]):
-    """What has come and was not taken yet, oldest first; putting never blocks."""
+    """Items received and not taken yet, oldest first; putting never blocks."""
 
     def __init__(self, bound: int) -> None:
-        """At most `bound` items wait; one more pushes out the oldest."""
+        """At most `bound` items wait; one more drops the oldest."""
         self.dropped = 0
-        """How many items gave way before anyone took them."""
+        """Number of items dropped before they were taken."""
         self._bound = bound
         self._waiting: dict[Hashable, Item] = {}
         self._numbers = itertools.count()
@@ -22,10 +23,10 @@ class Mailbox(Generic[Item]):
         self._closed = False
 
     def put(self, item: Item, slot: str | None = None) -> None:
-        """Add an item; on a closed mailbox nothing happens.
+        """Add an item; a closed mailbox ignores it.
 
-        An item with a slot replaces what waits there. That is not counted: who names a slot
-        wants the newest only.
+        An item with a slot replaces the waiting item of that slot. Such a replacement is not
+        counted: a slot means that only the newest item matters.
         """
         with self._changed:
             if self._closed:
@@ -39,7 +40,8 @@ class Mailbox(Generic[Item]):
             self._changed.notify()
 
     def take(self, timeout_s: float) -> Item | None:
-        """The oldest item; None when none came in time, or when it is over."""
+        """The oldest item; None when none comes in time, or when the mailbox is closed and
+        empty."""
         with self._changed:
             self._changed.wait_for(lambda: self._waiting or self._closed, timeout_s)
             return self._waiting.pop(next(iter(self._waiting))) if self._waiting else None
@@ -52,7 +54,7 @@ class Mailbox(Generic[Item]):
             return items
 
     def close(self) -> None:
-        """Take nothing more in and wake who waits; what waits can still be taken."""
+        """Accept nothing more and wake the waiting threads; waiting items can still be taken."""
         with self._changed:
             self._closed = True
             self._changed.notify_all()

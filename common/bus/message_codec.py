@@ -1,4 +1,4 @@
-"""Messages on their way: the table of topics, bytes, and the refusal of what no process says."""
+"""Encoding of messages: the table of topics, MessagePack, and refusal of malformed payloads."""
 
 from collections.abc import Iterator
 from typing import Any, Final, NamedTuple, TypeVar
@@ -27,19 +27,19 @@ from common.rig.camera import Camera, Rig
 from common.rig.upright import Shift, Upright
 
 MAX_BYTES: Final = 1_000_000
-"""No message of ours is larger (a 1920x1080 silhouette has 259 kB)."""
+"""Upper bound of a message's size, bytes (a silhouette of 1920x1080 takes 259 kB)."""
 
 
 class MalformedMessage(ValueError):
-    """Bytes that are no message of ours; the text says why."""
+    """Bytes that are no valid message; the text says why."""
 
 
 class Topic(NamedTuple):
-    """Where a message is said and how often to expect it."""
+    """The key of a message and its expected rate."""
 
     key: str
     hz: float
-    """0: not regular."""
+    """Messages a second; 0: not regular."""
     newest_only: bool
     """True where only the newest counts; False where every message does."""
 
@@ -60,12 +60,12 @@ TOPICS: Final[dict[type[Message], Topic]] = {
 Said = TypeVar("Said", bound=Message)
 
 MOST: Final = 1e9
-"""No number of ours is larger: seconds of thirty years, pixels, frames."""
+"""Upper bound of any number in a message: seconds of thirty years, pixels, frames."""
 _CARRIERS: Final = (
     *(Agreement, Observation, Search, Box, Measure, Fit, Landmarks, Lifting, Performance),
     *(Bdp, Elliptic, Round, Rig, Shift, Camera, Upright),
 )
-"""Structs in messages whose numbers are looked at."""
+"""Structs inside messages whose numbers are checked too."""
 _VIEWS: Final = tuple(range(MOST_VIEWS + 1))
 _LENGTHS: Final[dict[tuple[type[Message], str], tuple[int, ...]]] = {
     (Guide, "pose"): (0, len(POSE_NAMES)),
@@ -84,7 +84,7 @@ _LENGTHS: Final[dict[tuple[type[Message], str], tuple[int, ...]]] = {
 
 
 def key_of(message: Message, room: str) -> str:
-    """The key that a message is said on."""
+    """The key that a message is published on."""
     fields = {
         name: getattr(message, name) for name in ("viewer", "process") if hasattr(message, name)
     }
@@ -92,7 +92,7 @@ def key_of(message: Message, room: str) -> str:
 
 
 def pattern_of(kind: type[Message], room: str) -> str:
-    """The key expression that hears every message of a kind."""
+    """The key expression that matches every message of a kind."""
     return TOPICS[kind].key.format(room=room, viewer="*", process="*")
 
 
@@ -102,11 +102,11 @@ def encode(message: Message) -> bytes:
 
 
 def decode(payload: bytes, kind: type[Said]) -> Said:
-    """Bytes from the bus as a message that can be trusted.
+    """A message from untrusted bytes, checked.
 
     Raises:
-        MalformedMessage: When they are too long, no MessagePack, of another protocol, of the
-            wrong shape, or hold a number that is not finite.
+        MalformedMessage: When they are too long, no MessagePack, of another protocol version, of
+            the wrong shape, or hold a number that is not finite.
     """
     refuse_size(len(payload))
     try:
@@ -118,10 +118,10 @@ def decode(payload: bytes, kind: type[Said]) -> Said:
 
 
 def refuse_size(size_bytes: int) -> None:
-    """Say that a payload is too large to be looked at.
+    """Refuse a payload that is too large to be parsed.
 
     Raises:
-        MalformedMessage: When it is.
+        MalformedMessage: When it is too large.
     """
     if size_bytes > MAX_BYTES:
         raise MalformedMessage(f"{size_bytes} bytes, at most {MAX_BYTES} are taken")
@@ -135,7 +135,7 @@ def _refuse_what_no_process_would_say(message: Message) -> None:
         allowed = _LENGTHS.get((type(message), name))
         if allowed is not None and len(value) not in allowed:
             raise MalformedMessage(f"{name} has {len(value)} entries, not {allowed[-1]}")
-        if not _sum_of(value) <= MOST:  # quick; what is not finite makes it so too
+        if not _sum_of(value) <= MOST:  # a fast sum; it is NaN or infinite where an entry is
             _refuse_a_large_number(name, value)
     if isinstance(message, View):
         _refuse_a_false_view(message)
@@ -212,7 +212,7 @@ def _refuse_false_landmarks(landmarks: Landmarks) -> None:
 
 
 def _refuse_a_false_guide(guide: Guide) -> None:
-    """What is by camera is of all cameras, or a viewer finds no entry of its own."""
+    """Fields by camera must have an entry for every camera, or a viewer would not find its own."""
     for name in ("facing", "scale_px_per_m", "root_px", "rest_row_px", "moves"):
         if len(getattr(guide, name)) != len(guide.frames):
             raise MalformedMessage(f"{name} has no {len(guide.frames)} entries")
@@ -254,7 +254,7 @@ def _refuse_a_false_fit(fit: Fit) -> None:
 
 
 def _sum_of(value: object) -> float:
-    """Of all numbers in a value, without their signs."""
+    """Sum of the absolute values of all numbers in a value."""
     if isinstance(value, tuple):
         return _sum_of_tuple(value)
     if isinstance(value, (float, int)):
@@ -275,7 +275,7 @@ def _sum_of_tuple(values: tuple[Any, ...]) -> float:
         return sum(map(_sum_of, values))
     try:
         return float(sum(map(abs, values)))
-    except TypeError:  # not all are numbers
+    except TypeError:  # some entries are not numbers
         return sum(map(_sum_of, values))
 
 

@@ -1,4 +1,4 @@
-"""Everything that is ever said on the bus."""
+"""All messages on the bus."""
 
 from typing import Annotated, Final, Literal
 
@@ -11,55 +11,56 @@ from common.rig.upright import Shift, Upright
 PROTOCOL: Final = 12
 
 MOST_VIEWS: Final = 8
-"""Cameras of a rig."""
+"""Upper bound of the number of cameras in a rig."""
 ViewerNumber = Annotated[int, msgspec.Meta(ge=1, le=MOST_VIEWS)]
-"""A camera's place in the rig's order, the first is 1: never a place in a pair."""
+"""Index of a camera in the rig's order, from 1."""
 Status = Literal["empty", "measuring", "tracking", "predicted", "lost"]
 Views = Annotated[str, msgspec.Meta(pattern=r"^(both|none|[1-8](\+[1-8])*)$")]
-"""Which views show the person: of two cameras "both", of more their numbers, as "1+3"."""
+"""Which views show the person: "both" of two cameras, of more their numbers as "1+3"."""
 ScaleSource = Literal["calibrated", "person", "assumed"]
-"""Where a rig is from: a file, the person who moves before it, or nowhere."""
+"""Where a rig comes from: a file, the person who moves before it, or an assumption."""
 CameraFault = Literal["", "frozen", "black", "saturated", "covered"]
 MOTION_S: Final = 0.5
-"""How far back a guide looks for motion, seconds."""
+"""Window in which a guide looks for motion, seconds."""
 Point = tuple[float, float, float]
 
 
 class Message(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What all messages carry."""
+    """Base of all messages."""
 
     protocol: int = PROTOCOL
 
 
 class Moment(Message, frozen=True, kw_only=True):
-    """A message that speaks of a frame."""
+    """A message about a frame."""
 
     frame: int
     captured_s: float
-    """When it was taken: seconds since the clip began, or by the room's clock for a camera."""
+    """Capture time: seconds since the clip began, or by the room's clock for a camera."""
     clock_s: float
-    """The same moment by the room's clock (the integrator host's monotonic clock): for latency."""
+    """The same moment by the room's clock (the integrator host's monotonic clock), for latency."""
 
 
 class View(Moment, frozen=True, kw_only=True):
-    """What one viewer made of one frame."""
+    """One viewer's result for one frame."""
 
     viewer: ViewerNumber
     width: int
     height: int
-    """Of the picture that was worked on, pixels."""
+    """Size of the working picture, pixels."""
     people: tuple[Observation, ...] = ()
-    """Who is seen; () where no person is."""
+    """The people seen; () where there is none."""
     blobs: int = 0
-    """How many regions were large enough to be a person (P4)."""
+    """Number of regions that were large enough to be a person (P4)."""
     next_s: float | None = None
-    """`captured_s` of the next frame at the earliest; None for a camera, which does not know."""
+    """Earliest `captured_s` of the next frame; None for a camera, which cannot know it."""
     fault: CameraFault = ""
-    """What is wrong with the picture; no person is seen in it then."""
+    """Fault of the picture; no person is reported then."""
     shift: Shift | None = None
-    """How the camera was moved since the start; None: it stands as it stood."""
+    """How the camera was moved since the start; None: it was not."""
     upright: Upright | None = None
-    """How the picture that all pixels here are of comes from the file's; None: it is that."""
+    """How the working picture, to which all pixels here refer, comes from the file's; None:
+    directly."""
 
     @property
     def person(self) -> Observation | None:
@@ -68,77 +69,77 @@ class View(Moment, frozen=True, kw_only=True):
 
 
 class Guide(Moment, frozen=True, kw_only=True):
-    """What the integrator tells the viewers for their next frame."""
+    """The integrator's prediction for the viewers' next frame."""
 
     frames: tuple[int, ...]
-    """The last frame of each viewer that it has heard of; -1: none. This and all else by camera is
-    in the order of the rig's cameras."""
+    """The last frame received from each viewer; -1: none. All fields by camera are in the order
+    of the rig's cameras."""
     status: Status = "empty"
     bdp: Bdp | None = None
-    """Universal BDPs, metres; None until somebody was seen."""
+    """Universal BDPs, metres; None until a person was seen."""
     measured: bool = False
     """True once they come from the opening posture, False while they are a prior."""
     facing: tuple[Facing, ...] = ("facade", "flank")
     scale_px_per_m: tuple[float, ...] = (0.0, 0.0)
-    """Size of a metre at the body in each picture: reference scale times r_t,n (section 4.2); 0
-    where a camera has the body behind it."""
+    """Pixels per metre at the body in each picture: reference scale times r_t,n (section 4.2); 0
+    where the body is behind the camera."""
     root_px: tuple[Pixel, ...] = ((0.0, 0.0), (0.0, 0.0))
-    """Where to expect the navel in each picture."""
+    """Predicted place of the navel in each picture."""
     rest_row_px: tuple[float, ...] = (0.0, 0.0)
     """Row of each picture where the navel would be if the person stood upright there (P33)."""
     pose: tuple[float, ...] = ()
     """Predicted pose, POSE_NAMES order, metres and degrees."""
     stick: bool = False
-    """A stick body is asked for: one view is left, and what it proposes does not fit."""
+    """The viewer shall fit a stick body: one view is left, and its proposal fits badly."""
     proposes: bool = False
-    """The integrator reads the pose off the silhouettes: angles are not to be searched for."""
+    """The integrator reads the pose off the silhouettes: viewers need not search for angles."""
     moves: tuple[bool, ...] = (False, False)
-    """Whether each view's silhouette has changed within the last MOTION_S as a person's who moves:
-    a picture of another that has not is no picture of now."""
+    """For each view, whether its silhouette has changed within the last MOTION_S as a moving
+    person's does. A view without change while another has some shows a frozen picture."""
 
 
 class Lifting(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What one view alone cannot measure and was decided by itself (T21, T22)."""
+    """Decisions of a single view about what it cannot measure (T21, T22)."""
 
     orientation: str
     """One of `common.notes.notes.ORIENTATIONS`."""
     orientation_confidence: float
     """In [0, 1]; 1 where the user said so."""
     depth_confidence: tuple[float, ...]
-    """LIMBS order, in [0, 1]: of the sign of each segment's depth."""
+    """LIMBS order, in [0, 1]: confidence in the sign of each segment's depth."""
     depth_error_deg: tuple[float, ...] = ()
-    """LIMBS order: how far a segment's angle out of the picture changes with a pixel of its length
-    (T19); empty where the pose was not lifted from its segments."""
+    """LIMBS order: change of a segment's angle out of the picture with a pixel of its length
+    (T19); empty where the pose was not lifted from segments."""
 
 
 class Agreement(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """How well both views agree by the run's rig, over the last seconds."""
+    """Agreement of the views under the run's rig, over the last seconds."""
 
     apart_mm: float
-    """How far they place the joints from each other, errors that change left out."""
+    """Distance between the views' places of the joints, errors that vary left out."""
     soles_mm: float
     """Height of the feet above the floor while both stand on it."""
     facing_deg: float
-    """How far they disagree which way in the room the person faces."""
+    """Difference between the views' headings of the person in the world."""
     motion_mm: float
-    """How far they disagree how the joints move: what changes in how far apart they are placed."""
+    """Difference between the views' motion of the joints: the varying part of their distance."""
     believed: float
-    """By what the joints' confidence is multiplied: 1 of a rig that is believable."""
+    """Factor on the joints' confidence: 1 for a believable rig."""
 
 
 class Body(Moment, frozen=True, kw_only=True):
-    """One body: the universal BAPs and the joints they give."""
+    """One person's body in one frame: the universal BAPs and the joints they give."""
 
     status: Status
     views: Views
     person: int = 0
-    """The same number as long as it is the same person."""
+    """Constant as long as it is the same person."""
     joints_m: tuple[Point, ...] = ()
     """JOINT_NAMES order, world; empty where there is no pose."""
     joints_px: tuple[tuple[Pixel, ...], ...] = ()
-    """The same joints in the picture of each camera."""
+    """The same joints in each camera's picture."""
     pose: tuple[float, ...] = ()
-    """POSE_NAMES order; the angles are the smooth ones."""
+    """POSE_NAMES order; the angles are smoothed."""
     angles_raw_deg: tuple[float, ...] = ()
     """ANGLE_NAMES order, before smoothing."""
     confidence: tuple[float, ...] = ()
@@ -146,28 +147,28 @@ class Body(Moment, frozen=True, kw_only=True):
     extremities_m: tuple[Point, ...] = ()
     """Nose, heels, toes, knuckles: EXTREMITY_NAMES order, world; empty where there is no pose."""
     extremities_px: tuple[tuple[Pixel, ...], ...] = ()
-    """The same in the picture of each camera."""
+    """The same in each camera's picture."""
     extremities_confidence: tuple[float, ...] = ()
-    """EXTREMITY_NAMES order, in [0, 1]; 0: not measured, it follows from the joints."""
+    """EXTREMITY_NAMES order, in [0, 1]; 0: not measured, derived from the joints."""
     seen: tuple[bool, ...] = (False, False)
     """Whether each camera shows the person."""
     score: tuple[float, ...] = (0.0, 0.0)
-    """S of the pose in the picture of each camera; 0 where it sees no person."""
+    """S of the pose in each camera's picture; 0 where the camera sees no person."""
     facing: tuple[Facing, ...] = ("facade", "flank")
     bdp: Bdp | None = None
     matches: int = 0
     lifting: Lifting | None = None
-    """Where one view alone shows the body."""
+    """Set where one view alone shows the body."""
     scale_source: ScaleSource = "assumed"
-    """Where the rig is from that the body is told by."""
+    """Source of the rig that the body was computed with."""
     calibration: int = 0
-    """How often that rig was changed in the run: places before and after do not compare."""
+    """Number of changes of that rig so far: places before and after a change do not compare."""
     agreement: Agreement | None = None
     """None where one view alone shows the body, and until enough was seen."""
     moved: tuple[ViewerNumber, ...] = ()
-    """Cameras that were moved, and whose new place the person has not confirmed yet."""
+    """Cameras that were moved and whose new place the person has not confirmed yet."""
     made_of: tuple[int, ...] = (-1, -1)
-    """Frames of each viewer's report that it is made of; -1: none of that viewer."""
+    """The frame of each viewer's report that the body is made of; -1: none of that viewer."""
 
 
 class Performance(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -178,31 +179,31 @@ class Performance(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Its first frame; `end` is its last."""
     end: int
     onset_s: float
-    """When these were taken, as `captured_s`."""
+    """Capture times of both frames, as `captured_s`."""
     end_s: float
     posterior: float
-    """Of this posture among all, in [0, 1]."""
+    """Probability of this posture among all, in [0, 1]."""
     times: int = 0
-    """How often its course was gone through: strides, kicks, circles."""
+    """Number of repetitions: strides, kicks, circles."""
 
 
 class Posture(Moment, frozen=True, kw_only=True):
-    """What the body is doing."""
+    """The posture of one frame."""
 
     name: str
-    """One of the model's posture names, or "" while nothing can be said."""
+    """One of the model's posture names, or "" while it cannot be decided."""
     log_likelihoods: dict[str, float] = {}
     """log P(window | model) of each posture."""
     segment: tuple[int, int] = (0, 0)
-    """First and last frame of the window that was judged."""
+    """First and last frame of the judged window."""
     doing: str = ""
-    """The posture that is under way; "" while standing or doing something unknown. By a model that
-    knows no standing (the paper's) it is `name`."""
+    """The posture in progress; "" while the person stands or does something unknown. A model
+    without standing (the paper's) gives `name`."""
     times: int = 0
-    """How often its course was gone through so far."""
+    """Number of repetitions so far."""
     event: Performance | None = None
-    """A performance that is over, or cut off by the end of the run. One of the same onset as the
-    event before is that performance gone on after a pause, and takes its place."""
+    """A performance that has ended, or was cut off by the end of the run. If its onset equals
+    that of the event before, it continues that performance after a pause and replaces it."""
 
 
 class Picture(Moment, frozen=True, kw_only=True):

@@ -1,4 +1,4 @@
-"""What every process of a run does alike: end on a signal, say how it is doing, keep a log."""
+"""What every process of a run does: end on a signal, report its state, write a log."""
 
 import ctypes
 import gc
@@ -26,41 +26,42 @@ BEAT_S: Final = 1.0
 READY_S: Final = 60.0
 """How long processes wait for each other at the start: a first run compiles for some seconds."""
 PAGE_S: Final = 30.0
-"""How long a clip waits for somebody to open the page, once all else is ready."""
+"""How long a clip waits for the page to be opened, once all else is ready."""
 BEGIN_S: Final = READY_S + PAGE_S
-"""How long a viewer that is ready waits for the run to begin."""
+"""How long a ready viewer waits for the run to begin."""
 HANG_UP: Final[signal.Signals | None] = getattr(signal, "SIGHUP", None)
-"""What a terminal that is closed sends; None where terminals send nothing."""
+"""The signal of a closed terminal; None where the system has none."""
 SUPERVISING: Final = (
     ".".join([*__name__.split(".")[:-3], "runtime"]),
     "tritrack.__main__",
 )
-"""Loggers of what runs the parts, by the names that rooms have here; parts that are threads of its
-process log by their own."""
+"""Loggers of the processes that run the parts; parts that are threads of a process log by their
+own names."""
 
 
 class ProcessContext(NamedTuple):
-    """How a process was started, and where it leaves what it has to say."""
+    """How a process was started, and where it leaves its state and log."""
 
     supervised: bool = False
-    """Started by a supervisor, which alone hears Ctrl-C and asks it to end."""
+    """True where a supervisor started it, which alone handles Ctrl-C and asks it to end."""
     log: Path | None = None
     """The run's log; None: the terminal."""
     kept: Path | None = None
-    """Folder of this run alone, for what a process leaves to the one that is started in its place;
-    None: nobody would be."""
+    """Folder of this run in which a process leaves its state for its successor; None: it has
+    none."""
     stop: threading.Event | None = None
-    """Ends it where it is a thread of its supervisor's process; None: it has one of its own."""
+    """Event that ends the part where it is a thread of its supervisor's process; None: it has
+    its own process."""
 
 
 @contextmanager
 def process(name: str, context: ProcessContext) -> Iterator[threading.Event]:
-    """An event that is set when the process shall end; one thread for every library meanwhile.
+    """An event that is set when the process shall end; meanwhile each library uses one thread.
 
-    Who waits for the bus then leaves the `with` at once.
+    A process that waits for the bus then leaves the `with` at once.
     """
     cv2.setNumThreads(1)
-    if context.stop is not None:  # signals and log are the whole process's
+    if context.stop is not None:  # signals and log belong to the whole process
         with suppress(Stopped):
             yield context.stop
         return
@@ -92,7 +93,7 @@ def start_log(name: str, path: Path | None, level: int | str | None = None) -> N
 
 @contextmanager
 def logged(name: str, path: Path) -> Iterator[None]:
-    """Write what the supervisor logs to the run's log alone: its terminal shows it in words."""
+    """Send the supervisor's log to the run's log alone: its terminal shows the same in words."""
     handler, ours = logging.FileHandler(path), [logging.getLogger(each) for each in SUPERVISING]
     handler.setFormatter(logging.Formatter(_format(name)))
     for logger in ours:
@@ -112,7 +113,7 @@ def _format(name: str) -> str:
 
 
 class Heart:
-    """Says once a second how a process is doing."""
+    """Reports once a second how a process is doing."""
 
     def __init__(self, bus: Bus, name: str, pace: Pace) -> None:
         """`pace` counts the process's frames."""
@@ -121,7 +122,7 @@ class Heart:
         self._self = psutil.Process()
 
     def hurry(self) -> None:
-        """Let the next beat be published, however young the last one is: there is news."""
+        """Allow the next pulse at once, although the last one is recent: there is news."""
         self._next_s = 0.0
 
     def beat(
@@ -130,7 +131,7 @@ class Heart:
         detail: str = "",
         **counts: Any,
     ) -> None:
-        """Publish a Pulse, if the last is a second old or this is no ordinary one."""
+        """Publish a Pulse if the last one is a second old, or if this one is special."""
         now_s = time.monotonic()
         if state == "running" and now_s < self._next_s:
             return
@@ -151,20 +152,20 @@ class Heart:
         )
 
     def _memory_mb(self) -> float:
-        """Of this process; a thread of its supervisor's has none of its own."""
+        """This process's memory; a thread of its supervisor's process has none of its own."""
         if threading.current_thread() is not threading.main_thread():
             return 0.0
         return float(self._self.memory_info().rss / 1e6)
 
 
 def settle() -> None:
-    """Give back what loading took for a while, and never search what stays for garbage again.
+    """Give loading's temporary memory back, and exclude what stays from garbage collection.
 
-    What loading freed lies in holes of the heap, which glibc keeps: a room has eight processes, and
-    in each these are 10 to 30 MB.
+    Memory that loading freed lies in holes of the heap, which glibc keeps: 10 to 30 MB in each of a
+    room's eight processes.
     """
     gc.collect()
     gc.freeze()
     if sys.platform == "linux":
-        with suppress(AttributeError):  # another library than glibc
+        with suppress(AttributeError):  # not glibc
             ctypes.CDLL(None).malloc_trim(0)

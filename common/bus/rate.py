@@ -8,11 +8,11 @@ from collections.abc import Callable
 from typing import Final
 
 WINDOW: Final = 450
-"""Frames that the statistics look back on: half a minute at 15 Hz."""
+"""Window of the statistics, frames: half a minute at 15 Hz."""
 
 SILENT_PERIODS: Final = 5
-"""Messages that must be missing in a row before their speaker counts as silent: a late frame or
-two is no silence, and a third of a second at 15 Hz is soon enough to go on with one view."""
+"""Number of messages missing in a row before their sender counts as silent. One or two late
+frames are no silence; a third of a second at 15 Hz is soon enough to go on with one view."""
 
 Clock = Callable[[], float]
 
@@ -25,16 +25,16 @@ class Pace:
     """
 
     def __init__(self, period_s: float) -> None:
-        """Nothing done yet."""
+        """No frame done yet."""
         self.misses = 0
-        """Deadlines missed since the start."""
+        """Number of deadlines missed since the start."""
         self.frames = 0
-        """Frames done since the start."""
+        """Number of frames done since the start."""
         self._period_s = period_s
         self._recent: deque[tuple[float, float]] = deque(maxlen=WINDOW)
 
     def done(self, due_s: float, now_s: float) -> None:
-        """Count a frame that was due at one moment and whose work ended at another."""
+        """Count a frame by the moment it was due and the moment its work ended."""
         self.frames += 1
         self.misses += now_s - due_s > self._period_s
         self._recent.append((now_s, now_s - due_s))
@@ -48,7 +48,7 @@ class Pace:
         return (len(self._recent) - 1) / took_s if took_s > 0 else 0.0
 
     def latency_ms(self, share: float) -> float:
-        """Time from due to done that this share of the window's frames stayed within.
+        """Time from due to done within which this share of the window's frames stayed.
 
         The nearest-rank quantile: one of the measured times, 0 before the first frame.
         """
@@ -59,7 +59,7 @@ class Pace:
 
 
 def wait_until(due_s: float, stop: threading.Event, clock: Clock = time.monotonic) -> bool:
-    """Wait for a moment of the clock; False when `stop` was set before it came."""
+    """Wait for a moment of the clock; False when `stop` was set before."""
     while (left_s := due_s - clock()) > 0:
         if stop.wait(left_s):
             return False
@@ -67,5 +67,5 @@ def wait_until(due_s: float, stop: threading.Event, clock: Clock = time.monotoni
 
 
 def silent(hz: float, last_heard_s: float, now_s: float) -> bool:
-    """Whether who speaks at a rate has fallen silent; never for what is said irregularly (0 Hz)."""
+    """Whether the sender of regular messages has fallen silent; never for irregular ones (0 Hz)."""
     return hz > 0 and now_s - last_heard_s > SILENT_PERIODS / hz

@@ -1,4 +1,4 @@
-"""A settings file: TOML that departs from the defaults, its paths relative to it."""
+"""Settings files: TOML that overrides the defaults, with paths relative to the file."""
 
 import os
 from pathlib import Path
@@ -12,17 +12,18 @@ from common.config.renamed_settings import settings_of, warn_of_renamed
 from common.config.settings import LANDMARK_SOURCES, NETWORK, Settings
 
 MOST_BYTES: Final = 1 << 20
-"""No settings are longer: what is, is a video, which is not read into memory."""
+"""Upper bound of a settings file's size, bytes: a larger file is probably a video, and is not
+read."""
 
 
 def load(path: Path) -> Settings:
-    """Read a settings file, or take a clip folder as one with nothing else set.
+    """Read a settings file; a clip folder counts as one that sets the clip alone.
 
     Relative paths in the file are relative to the file.
 
     Raises:
-        SettingsError: When it cannot be read, holds an unknown or ill-typed setting, or its
-            landmarks name no folder.
+        SettingsError: When the file cannot be read, holds an unknown or ill-typed setting, or names
+            a landmarks folder that does not exist.
     """
     if path.is_dir():
         return Settings(clip=str(path))
@@ -50,10 +51,11 @@ def load(path: Path) -> Settings:
 
 
 def with_full_paths(settings: Settings, path: Path) -> Settings:
-    """Settings that stand in a file: relative paths from there, environment variables filled in.
+    """Settings with relative paths resolved against the file's folder and environment variables
+    replaced.
 
     Raises:
-        SettingsError: When a variable is not set, or the landmarks are not there.
+        SettingsError: When a variable is not set, or the landmarks do not exist.
     """
     return msgspec.structs.replace(
         settings,
@@ -70,7 +72,7 @@ def with_full_paths(settings: Settings, path: Path) -> Settings:
 
 
 def full_path(name: str, path: Path) -> str:
-    """A path that stands in a file, from there, environment variables filled in; "" where none is.
+    """A path of the file, resolved against its folder, with variables replaced; "" stays "".
 
     Raises:
         SettingsError: When a variable is not set.

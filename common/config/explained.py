@@ -1,4 +1,4 @@
-"""What is wrong with a file of settings or measurements, in its writer's words."""
+"""Faults in settings and measurement files, worded for the person who wrote the file."""
 
 import re
 from collections.abc import Iterator, Sequence
@@ -28,18 +28,18 @@ WORDS: Final = {
     "array": "a list",
     "object": "a table",
 }
-"""What people call msgspec's kinds."""
+"""Plain names for msgspec's types."""
 
 Step = str | int
-"""A key, or the place in a list, from 0; "..." for what stands under any key."""
+"""A key, or an index in a list, from 0; "..." for any key."""
 
 
 def explained(error: Exception, kind: type) -> str:
-    """What msgspec found wrong, said without its words: the setting, what was got, what may stand.
+    """msgspec's message in plain words: the setting, the value, and what is allowed.
 
     Args:
-        error: What decoding raised.
-        kind: What the file was to be.
+        error: The exception that decoding raised.
+        kind: The type that the file was decoded as.
     """
     if not isinstance(error, msgspec.ValidationError):
         return toml_fault(str(error))
@@ -70,7 +70,7 @@ def _of_field(steps: Sequence[Step], field: str, what: str, kind: type) -> str:
 
 
 def _wanted(expected: re.Match[str]) -> str:
-    """What a value must be, and what it is."""
+    """The expected type of a value and its actual type."""
     kinds = [WORDS.get(kind, kind) for kind in expected["kinds"].split(" | ") if kind != "null"]
     got = expected["got"]
     was = f", got {'a fraction' if got == 'float' else WORDS.get(got, got)}" if got else ""
@@ -80,7 +80,7 @@ def _wanted(expected: re.Match[str]) -> str:
 
 
 def _named(steps: Sequence[Step]) -> str:
-    """A place as people count: `cameras 1, floor_px 2` for `$.cameras[0].floor_px[1]`."""
+    """A place counted from 1: `cameras 1, floor_px 2` for `$.cameras[0].floor_px[1]`."""
     text = ""
     for before, step in zip([None, *steps], steps, strict=False):
         if isinstance(step, int):
@@ -91,7 +91,7 @@ def _named(steps: Sequence[Step]) -> str:
 
 
 def _found(kind: type, steps: Sequence[Step]) -> list[inspect.Type]:
-    """What may stand at a place of a file."""
+    """What is allowed at a place of a file."""
     infos = list(_parts(inspect.type_info(kind)))
     for step in steps:
         infos = [part for info in infos for below in _below(info, step) for part in _parts(below)]
@@ -99,7 +99,7 @@ def _found(kind: type, steps: Sequence[Step]) -> list[inspect.Type]:
 
 
 def _parts(info: inspect.Type) -> Iterator[inspect.Type]:
-    """A kind, or each that a union allows."""
+    """A type, or each member of a union."""
     if isinstance(info, inspect.UnionType):
         for each in info.types:
             yield from _parts(each)

@@ -8,39 +8,39 @@ import msgspec
 from common.endpoint import is_endpoint, is_exposed, is_host
 
 MOST_SESSION: Final = 64
-"""Letters of a session's word, which goes with every message."""
+"""Characters allowed in a session's word, which goes with every message."""
 
 PAPER_HZ: Final = 15.0
-"""Frames a second that settings in frames spoke of (P1)."""
+"""Frame rate of the older settings that count frames, Hz (P1)."""
 AUTO: Final = "auto"
-"""An endpoint that is left open."""
+"""The endpoint that a live run chooses itself."""
 
 
 class SettingsError(ValueError):
-    """Settings that no run could mean: the text names the file, the place and the cure."""
+    """Invalid settings: the text names the file, the place and the cure."""
 
 
 def within(name: str, value: float, low: float, high: float) -> None:
-    """Refuse a number out of bounds.
+    """Refuse a number outside its bounds.
 
     Raises:
-        ValueError: It names what was got.
+        ValueError: It names the value.
     """
     if not low <= value <= high:
         raise ValueError(f"{name} must be from {low} to {high}, got {value}")
 
 
 class CameraSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Where one view's frames come from."""
+    """Source of one view's frames."""
 
     source: str = ""
-    """A video file; environment variables are filled in."""
+    """Path of a video file; environment variables are replaced."""
     device: int = -1
-    """Number of a camera of this host; -1: none."""
+    """Index of a camera of this host; -1: none."""
     background: str = ""
-    """A picture of the empty room, or a video of it."""
+    """Path of a picture of the empty background, or of a video of it."""
     calibrated_as: str = ""
-    """Name of the camera in the calibration; by its place in the file when empty."""
+    """Name of the camera in the calibration; its position in the file where empty."""
 
     def __post_init__(self) -> None:
         """Refuse a view with two sources."""
@@ -49,18 +49,18 @@ class CameraSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class SilhouetteSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """How a person is told from the room (P3)."""
+    """How a person is distinguished from the background (P3)."""
 
     empty_s: float = 0.5
-    """For how long a clip shows the empty room at first; if a person stands there already, the
-    background is estimated from the whole clip instead."""
+    """Seconds at the start of a clip that show the empty background; if a person stands there
+    already, the background is estimated from the whole clip instead."""
     empty_frames: int = 0
-    """What settings said before there was `empty_s`: so many frames, of 15 a second."""
+    """Older form of `empty_s`: a number of frames at 15 Hz."""
     min_height_share: float = 0.15
-    """A region lower than this share of the picture is no person."""
+    """A region smaller than this share of the picture is no person."""
 
     def __post_init__(self) -> None:
-        """Refuse what no run could mean."""
+        """Refuse invalid values."""
         within("empty_frames", self.empty_frames, 0, 1000)
         if self.empty_frames:
             msgspec.structs.force_setattr(self, "empty_s", self.empty_frames / PAPER_HZ)
@@ -87,30 +87,31 @@ class SearchSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class BodySettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What is assumed of the person until measured."""
+    """Assumptions about the person until measured."""
 
     stature_m: float = 1.75
-    """Assumed where no calibration gives the scale, and of a body before it is measured."""
+    """Stature, metres: used where no calibration gives the scale, and before the body is
+    measured."""
     opening_frames: int = 3
-    """How many accepted frames of the opening posture make the BDPs (their median)."""
+    """Number of accepted frames of the opening posture whose median makes the BDPs."""
 
     def __post_init__(self) -> None:
-        """Refuse what no run could mean."""
+        """Refuse invalid values."""
         within("stature_m", self.stature_m, 0.5, 2.6)
         within("opening_frames", self.opening_frames, 1, 100)
 
 
 class RecognizerSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """How postures are named."""
+    """How postures are recognised."""
 
     model: str = ""
-    """A file that `tritrack train` wrote; the one in the package when empty."""
+    """Path of a model that `tritrack train` wrote; the one in the package where empty."""
     window_frames: int = 40
-    """The stretch of motion that is judged at each frame (section 5: about 40), of 15 a second,
-    which is the recogniser's own rate whatever the camera's is."""
+    """Length of the window that is judged at each frame, frames (section 5: about 40) at 15 Hz,
+    the recogniser's own rate for any camera."""
 
     def __post_init__(self) -> None:
-        """Refuse what no run could mean."""
+        """Refuse invalid values."""
         within("window_frames", self.window_frames, 5, 600)
 
 
@@ -120,17 +121,17 @@ class PageSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     port: int = 8080
     """0: no page."""
     wait: bool = True
-    """A recorded clip begins when the page is opened, or half a minute later."""
+    """True: a recorded clip waits for the page to be opened, for half a minute at most."""
     save_lost: bool = False
-    """The last 15 s become a run folder whenever a person who was followed is lost from sight."""
+    """True: whenever a followed person is lost, the last 15 s are saved as a run folder."""
     host: str = "127.0.0.1"
-    """Where it listens. Beyond this machine, as at 0.0.0.0, a token in the printed address is asked
-    for, and nothing hides what is sent."""
+    """Address that the page listens on. Beyond this machine, as at 0.0.0.0, the page asks for
+    the token in the printed address, and the traffic is not encrypted."""
     name: str = ""
-    """By which browsers call a proxy that stands before the page, as rig.example."""
+    """Host name under which browsers reach the page through a proxy, as rig.example."""
 
     def __post_init__(self) -> None:
-        """Refuse what no run could mean."""
+        """Refuse invalid values."""
         within("port", self.port, 0, 65535)
         for name, word in (("host", self.host), ("name", self.name or "none")):
             if not word or not is_host(word):
@@ -138,23 +139,23 @@ class PageSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class BusSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Where the processes meet."""
+    """Where the processes connect."""
 
     endpoint: str = "tcp/127.0.0.1:7447"
-    """The integrator's host listens there, all others connect to it. Name another host's address
-    to spread a rig over hosts, with `keys`; nothing outside this machine is heard otherwise.
-    "auto": a live run takes a free port of this machine, and tells it."""
+    """The integrator's host listens there, all others connect. Name another host's address to
+    spread a rig over hosts, with `keys`; without it nothing outside this machine is accepted.
+    "auto": a live run takes a free port of this machine and prints it."""
     session: str = ""
-    """A word that all processes of a run say with each message: what comes without it is dropped.
-    A live run makes one up; "": whoever speaks in the room is heard."""
+    """A word that all processes of a run add to each message; messages without it are dropped. A
+    live run makes one up; "": every message in the room is accepted."""
     keys: str = ""
-    """A folder that `tritrack keys` made: all speak TLS, show their certificates, and say no more
-    than theirs allows; the endpoint is then tls/HOST:PORT."""
+    """A folder that `tritrack keys` made: all processes speak TLS, show their certificates and
+    have the rights of these; the endpoint is then tls/HOST:PORT."""
     open_to_all: bool = False
-    """Let whoever reaches the endpoint hear and say all, though other machines do."""
+    """True: accept every connection without keys, even from other machines."""
 
     def __post_init__(self) -> None:
-        """Refuse what no run could mean."""
+        """Refuse invalid values."""
         if len(self.session) > MOST_SESSION or not self.session.isascii():
             raise ValueError(
                 f"session must be at most {MOST_SESSION} ASCII letters, got {self.session!r}"

@@ -1,10 +1,10 @@
-"""How large pictures are worked on."""
+"""Sizes of working pictures."""
 
 from typing import Final
 
 SMALLEST: Final = 32
 LARGEST: Final = 4096
-"""Of either side, pixels."""
+"""Bounds of each side, pixels."""
 
 
 def size_of(text: str) -> tuple[int, int]:
@@ -24,6 +24,6 @@ def size_of(text: str) -> tuple[int, int]:
 
 
 def working_size(source: tuple[int, int], bound: tuple[int, int]) -> tuple[int, int]:
-    """Largest size of the source's shape within the bound; never larger than the source."""
+    """The largest size of the source's shape within the bound; never larger than the source."""
     shrink = min(1.0, bound[0] / source[0], bound[1] / source[1])
     return max(1, round(source[0] * shrink)), max(1, round(source[1] * shrink))

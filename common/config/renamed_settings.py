@@ -1,4 +1,4 @@
-"""Settings as 0.2 wrote them, in the words of this version: read for one version more."""
+"""Settings as version 0.2 named them, accepted for one more version."""
 
 import warnings
 from collections.abc import Mapping
@@ -11,19 +11,19 @@ from common.config.part_settings import CameraSettings, SettingsError
 from common.config.settings import Settings
 
 CAMERAS: Final = {"camera_1": "cam1", "camera_2": "cam2"}
-"""What 0.2 called its two cameras, and their names in `cameras`."""
+"""Version 0.2's tables of its two cameras, and their names in `cameras`."""
 
 
 class RenamedSetting(DeprecationWarning):
-    """A setting in the words of an older version; the text says the new ones."""
+    """A setting under an older name; the text gives the new one."""
 
 
 def warn_of_renamed(written: object, where: str) -> None:
-    """Say which tables of a settings file have another name now.
+    """Warn about renamed tables in a settings file.
 
     Args:
-        written: What the file holds, as plain values.
-        where: What messages call it.
+        written: The file's content, as plain values.
+        where: How messages name the file.
     """
     for old, name in CAMERAS.items():
         if isinstance(written, Mapping) and written.get(old) is not None:
@@ -32,10 +32,10 @@ def warn_of_renamed(written: object, where: str) -> None:
 
 
 def in_new_words(written: Any) -> Any:
-    """Settings as plain values, with the names of this version; what is none is left as it is.
+    """Settings as plain values, renamed to this version; what is no table is returned as it is.
 
     Raises:
-        SettingsError: When one camera is written in both ways.
+        SettingsError: When one camera is given under both names.
     """
     if not isinstance(written, Mapping) or not written.keys() & CAMERAS.keys():
         return written
@@ -51,18 +51,18 @@ def in_new_words(written: Any) -> Any:
 
 
 def settings_of(written: object) -> Settings:
-    """The settings that a run was made with, of this version or the one before.
+    """The settings of a run, written by this version or the one before.
 
     Args:
-        written: As plain values.
+        written: The settings as plain values.
 
     Raises:
-        ValidationError, SettingsError: When they are none.
+        ValidationError, SettingsError: When they are invalid.
     """
     new = in_new_words(written)
     cameras = new.get("cameras") if isinstance(new, Mapping) else None
     for name, camera in cameras.items() if isinstance(cameras, Mapping) else ():
-        try:  # each by itself: what is wrong in a dict is told without its key
+        try:  # each by itself: a fault inside a dict is reported without its key
             msgspec.convert(camera, CameraSettings)
         except msgspec.ValidationError as error:
             raise SettingsError(f"cameras.{name}: {explained(error, CameraSettings)}") from error

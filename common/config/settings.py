@@ -20,49 +20,50 @@ from common.endpoint import address_of
 from common.method import Mode
 
 LANDMARK_SOURCES: Final = ("own", "none", "mediapipe")
-"""What `landmarks` may say instead of a path."""
+"""Values of `landmarks` that are not paths."""
 MOST_OFFSET_S: Final = 3600.0
 CAMERA_NAME: Final = re.compile(r"[A-Za-z0-9_-]{1,32}")
 NETWORK: Final = ".onnx"
-"""What the name of a network of ours ends in."""
+"""Suffix of a landmark network's file."""
 
 
 class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """One run: where pictures come from, how they are looked at, where the processes meet."""
+    """One run: source of the pictures, how they are processed, where the processes connect."""
 
     room: str = "room"
-    """Name of the place: part of every topic, so that two rigs can share a network."""
+    """Name of the site: part of every topic, so that two rigs can share a network."""
     mode: Mode = "default"
     clip: str = ""
-    """A clip folder with cam1.*, cam2.*; environment variables are filled in."""
+    """A clip folder with cam1.*, cam2.*; environment variables are replaced."""
     calibration: str = ""
-    """A calibration.json; the one beside the clip or one folder up when empty."""
+    """Path of a calibration.json; where empty, the one beside the clip or one folder up."""
     trust_calibration: bool = False
-    """Go on with a calibration that no room has, and advise nothing on one that seems wrong."""
+    """True: accept a calibration that no room has, and give no advice on one that seems wrong."""
     opening: str = ""
-    """A clip folder, or a settings file, that shows the person in a T before the run: the body is
-    measured there. Its cameras may stand elsewhere."""
+    """A clip folder, or a settings file, that shows the person in a T pose before the run: the
+    body is measured there. Its cameras may stand elsewhere."""
     size: str = "160x120"
-    """Bound of the working picture: aspect kept."""
+    """Bound of the working picture; the aspect ratio is kept."""
     landmarks: str = "own"
-    """What tells the joints that the picture itself shows: the network in the package ("own"),
-    nothing ("none"), "mediapipe", a network of one's own (a file that `tritrack train --what
-    landmarks` wrote), or a folder of keypoint files."""
+    """Source of the landmarks: the network in the package ("own"), no source ("none"),
+    "mediapipe", another network (a file that `tritrack train --what landmarks` wrote), or a
+    folder of keypoint files."""
     every: int = 1
-    """Take every n-th frame of a recorded clip."""
+    """Process every n-th frame of a recorded clip."""
     fps: float = 0.0
-    """Rate at which recorded clips are taken to run, and played; 0: what they say themselves. Of
-    cameras on another host than the integrator's: theirs."""
+    """Frame rate at which recorded clips are taken and played, Hz; 0: the rate in the file. For
+    cameras on another host than the integrator's: their rate."""
     offset_s: float | None = None
-    """How late camera 2 is, seconds: what camera 1 shows at t, camera 2 shows at t + offset_s of
-    its own times. Below 0 where it was started later. None: who moves in a recorded clip tells."""
+    """Delay of camera 2, seconds: what camera 1 shows at t, camera 2 shows at t + offset_s of
+    its own times. Negative where camera 2 was started later. None: estimated from the moving
+    person of a recorded clip."""
     metrics: str = ""
-    """HOST:PORT at which a live run answers /metrics (Prometheus) and /healthz; nowhere when
+    """HOST:PORT at which a live run answers /metrics (Prometheus) and /healthz; nowhere where
     empty."""
     pictures: bool = False
-    """Publish small pictures for the page; otherwise no picture leaves a viewer."""
+    """True: publish small pictures for the page; otherwise no picture leaves a viewer."""
     cameras: dict[str, CameraSettings] = {}
-    """Each camera by its name, in their order: of a clip folder cam1, cam2 ..., else any."""
+    """The cameras by name, in order: cam1, cam2 ... of a clip folder, else any names."""
     silhouette: SilhouetteSettings = SilhouetteSettings()
     search: SearchSettings = SearchSettings()
     body: BodySettings = BodySettings()
@@ -72,11 +73,11 @@ class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     @property
     def looks_itself(self) -> bool:
-        """Whether viewers look by a network of ours, the one in the package or another."""
+        """Whether viewers use a landmark network of ours, in the package or in a file."""
         return self.landmarks == "own" or self.landmarks.endswith(NETWORK)
 
     def __post_init__(self) -> None:
-        """Refuse what no run could mean."""
+        """Refuse invalid values."""
         if not self.room or set(self.room) & set("/*$#? "):
             raise ValueError(f"room must be a plain word, got {self.room!r}")
         size_of(self.size)

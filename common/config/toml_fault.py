@@ -1,4 +1,4 @@
-"""What is wrong with a file that is no TOML, in its writer's words."""
+"""Faults in TOML files, worded for the person who wrote the file."""
 
 import re
 from typing import Final
@@ -31,11 +31,11 @@ FAULTS: Final = (
     (r"Unescaped '\\' in a string", r"a text holds a single \: write \\, or use single quotes"),
     (r"Invalid hex value|Escaped character is not a Unicode scalar value", ESCAPE),
 )
-"""What Python's tomllib finds wrong, as patterns, and what is said instead."""
+"""Patterns of tomllib's messages, and the wording that replaces each."""
 
 
 def toml_fault(text: str) -> str:
-    """What tomllib says, in plain words, after the line and column; any other text as it is."""
+    """tomllib's message in plain words, after the line and column; any other text as it is."""
     placed = PLACED.fullmatch(text)
     if placed is None:
         return text

@@ -1,4 +1,4 @@
-"""The user's inputs to a video from one camera: orientation, depth, joints that are hidden."""
+"""The user's inputs to a video from one camera: orientation, depth, hidden joints."""
 
 import itertools
 import math
@@ -14,9 +14,9 @@ Orientation = Literal[
 """Which way a person faces: left and right as in the picture, forward to the camera (T22)."""
 Depth = Literal["toward", "away"]
 """Whether a segment's far end is nearer to the camera than its near end, or farther (T21). The
-far end is that away from the trunk; of the trunk itself, the neck."""
+far end is the one away from the trunk; of the trunk itself, the neck."""
 Auto = Literal["auto"]
-"""Gives a decision back to the program."""
+"""Value that gives a decision back to the program."""
 JointPixel = tuple[float, float]
 """Column and row in the video's own pixels; the centre of the top-left one is (0.5, 0.5)."""
 
@@ -24,22 +24,22 @@ ORIENTATIONS: Final[tuple[Orientation, ...]] = get_args(Orientation)
 WAYS: Final[tuple[Depth, ...]] = get_args(Depth)
 
 MOST_PX: Final = 1e5
-"""No picture is larger."""
+"""Upper bound of a column or row, pixels."""
 
 
 class Note(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_defaults=True):
-    """What the user says at one frame; it holds until a later note says otherwise."""
+    """The user's input at one frame; it holds until a later note changes it."""
 
     frame: int
-    """Index into the video."""
+    """Index of the frame in the video."""
     orientation: Orientation | Auto | None = None
     depth: dict[str, Depth | Auto] = {}
-    """By segment, a name of LIMBS."""
+    """By segment: a name of LIMBS."""
     joints_px: dict[str, JointPixel | Auto] = {}
-    """By joint, a name of JOINT_NAMES."""
+    """By joint: a name of JOINT_NAMES."""
 
     def __post_init__(self) -> None:
-        """Refuse what no video could have."""
+        """Refuse what no video can have."""
         if self.frame < 0:
             raise ValueError(f"frame must not be negative, got {self.frame}")
         for key, known in (("depth", LIMBS), ("joints_px", JOINT_NAMES)):
@@ -52,14 +52,14 @@ class Note(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_default
 
 
 class Notes(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_defaults=True):
-    """All that the user says of a video, in the order of frames."""
+    """All the user's inputs to a video, in the order of frames."""
 
     video: str = ""
-    """Name of the video file; "": whichever stands beside it."""
+    """Name of the video file; "": the one beside the notes."""
     note: tuple[Note, ...] = ()
 
     def __post_init__(self) -> None:
-        """Put them in order; refuse two of one frame."""
+        """Sort the notes; refuse two for one frame."""
         ordered = tuple(sorted(self.note, key=lambda note: note.frame))
         for before, after in itertools.pairwise(ordered):
             if before.frame == after.frame:
@@ -68,7 +68,7 @@ class Notes(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_defaul
 
 
 class Held(msgspec.Struct, frozen=True):
-    """What the user's inputs say of one frame; what is missing is the program's to decide."""
+    """The user's inputs that hold at one frame; the program decides what is missing."""
 
     orientation: Orientation | None = None
     depth: dict[str, Depth] = {}
@@ -76,7 +76,7 @@ class Held(msgspec.Struct, frozen=True):
 
 
 def held(notes: Notes, frame: int) -> Held:
-    """What holds at a frame: of every entry the newest that is not later (T21)."""
+    """The inputs that hold at a frame: of each entry the newest that is not later (T21)."""
     orientation: Orientation | Auto | None = None
     depth: dict[str, Depth | Auto] = {}
     joints_px: dict[str, JointPixel | Auto] = {}
@@ -93,7 +93,7 @@ def held(notes: Notes, frame: int) -> Held:
 
 
 def noted(notes: Notes, new: Note) -> Notes:
-    """The notes with one more input; entries that change nothing of what holds are left out."""
+    """The notes with one more input; entries without effect are left out."""
     others = [note for note in notes.note if note.frame != new.frame]
     old = next((note for note in notes.note if note.frame == new.frame), Note(new.frame))
     joined = Note(
@@ -106,14 +106,15 @@ def noted(notes: Notes, new: Note) -> Notes:
 
 
 def placed_once(notes: Notes, frame: int, joint: str, place: JointPixel) -> Notes:
-    """The notes with a joint placed in one frame alone: at the next holds what held before."""
+    """The notes with a joint placed in one frame alone: the next frame has the input from
+    before."""
     before: JointPixel | Auto = held(notes, frame + 1).joints_px.get(joint, "auto")
     first = noted(notes, Note(frame, joints_px={joint: place}))
     return noted(first, Note(frame + 1, joints_px={joint: before}))
 
 
 def _tidied(notes: Notes) -> Notes:
-    """Without the entries that repeat what holds anyway."""
+    """The notes without entries that repeat what holds already."""
     kept: list[Note] = []
     for note in notes.note:
         before = held(Notes(note=tuple(kept)), note.frame)

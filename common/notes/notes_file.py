@@ -1,4 +1,4 @@
-"""Notes on disk: a small text file beside the video that people read and edit too."""
+"""Notes on disk: a small text file beside the video that people can read and edit."""
 
 import re
 import tomllib
@@ -14,7 +14,7 @@ from common.config.toml_fault import toml_fault
 from common.notes.notes import ORIENTATIONS, Notes
 
 MAX_BYTES: Final = 1 << 20
-"""No notes that people give are longer."""
+"""Upper bound of a notes file's size, bytes."""
 
 CURES: Final = {
     "frame": "give the number of a frame, counted from 0",
@@ -24,7 +24,7 @@ CURES: Final = {
     "video": "write the name of the video file in quotes",
     "note": "begin each with [[note]], then frame = NUMBER",
 }
-"""What to write instead, by key."""
+"""Cures, by key."""
 
 HEAD: Final = f"""\
 # What the pictures of a video do not show: read by `tritrack single`, edited by `tritrack retouch`
@@ -42,9 +42,9 @@ class NotesError(ValueError):
 
 
 def notes_path(video: Path) -> Path:
-    """Where the notes of a video are, or would be: `notes.toml` beside it.
+    """The path of a video's notes, whether the file exists or not: `notes.toml` beside the video.
 
-    Where that one names another video of the same folder, it is NAME.notes.toml.
+    Where that file names another video of the same folder, it is NAME.notes.toml.
 
     Raises:
         NotesError: When there is a `notes.toml` that cannot be read.
@@ -59,7 +59,7 @@ def load_notes(path: Path) -> Notes:
     """Read notes.
 
     Raises:
-        NotesError: When they cannot be read, or say what cannot be.
+        NotesError: When they cannot be read or are invalid.
     """
     try:
         size = path.stat().st_size
@@ -78,11 +78,11 @@ def load_notes(path: Path) -> Notes:
 
 
 def save_notes(path: Path, notes: Notes) -> None:
-    """Write notes, whole or not at all; comments that are in the file stay.
+    """Write notes completely or not at all; comments in the file stay.
 
     Raises:
-        NotesError: When they cannot be written: no space, no right, or another program has spoilt
-            the file meanwhile. It is untouched then.
+        NotesError: When they cannot be written: no space, no permission, or another program damaged
+            the file. The file is unchanged then.
     """
     from tomlkit.exceptions import TOMLKitError
 
@@ -103,7 +103,7 @@ def save_notes(path: Path, notes: Notes) -> None:
 
 
 def _mended(error: Exception, text: str) -> str:
-    """What is wrong, in which line, and what to write instead."""
+    """The fault, its line, and what to write instead."""
     reason, _, place = str(error).partition(" - at ")
     number = re.search(r"note\[(\d+)\]", place)
     words = re.findall(r"[a-z_]+", place.rpartition("note[")[2] or place) + reason.split()
@@ -115,7 +115,7 @@ def _mended(error: Exception, text: str) -> str:
 
 
 def _line_of(text: str, number: int | None, key: str) -> int | None:
-    """The line of a key in a note, or the note's first where the key is not found."""
+    """The line of a key in a note; the note's first line where the key is not found."""
     heads, found = 0, None
     for at, line in enumerate(text.splitlines(), 1):
         if re.match(r"\s*\[\[\s*note\s*\]\]", line):

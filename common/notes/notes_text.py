@@ -1,4 +1,4 @@
-"""The text of notes, brought up to date: what people wrote beside them stays as it is."""
+"""The text of a notes file, updated: comments and style stay."""
 
 from typing import Any
 
@@ -10,14 +10,14 @@ from common.notes.notes import Note, Notes
 
 
 def notes_text(notes: Notes, before: str) -> str:
-    """A file of notes with these in it, in their order where they are new.
+    """The text of a notes file with these notes; new ones are inserted in order.
 
     Args:
-        notes: All that shall be said.
-        before: The file so far, whose comments, order and style are kept.
+        notes: All notes that the file shall hold.
+        before: The text so far, whose comments, order and style are kept.
 
     Raises:
-        tomlkit.exceptions.TOMLKitError: When that is no TOML.
+        tomlkit.exceptions.TOMLKitError: When the text so far is no TOML.
     """
     document: Any = tomlkit.parse(before)
     if notes.video != document.get("video", ""):
@@ -40,7 +40,7 @@ def notes_text(notes: Notes, before: str) -> str:
 
 
 def _update(table: Any, note: Note) -> None:
-    """Let a table say what a note says; entries that say it already are left alone."""
+    """Make a table match a note; entries that match already are not touched."""
     if note.orientation is None:
         table.pop("orientation", None)
     elif table.get("orientation") != note.orientation:
@@ -64,5 +64,5 @@ def _plain(value: object) -> object:
 
 
 def _quoted(text: str) -> str:
-    """A TOML string: JSON's escapes are among TOML's, which wants DEL escaped too."""
+    """A TOML string: JSON's escapes are valid TOML, which wants DEL escaped too."""
     return msgspec.json.encode(text).decode().replace("\x7f", "\\u007f")

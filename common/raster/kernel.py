@@ -22,30 +22,30 @@ from common.raster.similarity import Mask
 from common.rig.camera import Camera
 
 R_UPPER_ARM: Final = LIMBS.index("r_upper_arm")
-"""The first of the limbs that are round."""
+"""Index in LIMBS of the first round limb."""
 THINNEST: Final = 1e-3
 """Least height of a section in the picture, as a share of its width: flat ends stay finite."""
 NEAREST_M: Final = 0.05
 """A limb that reaches nearer to the camera, or behind it, is not drawn."""
 
 ACROSS, DOWN, AHEAD = 0, 3, 6
-"""Where a view vector has the three rows of R, world to camera."""
+"""Index in a view vector of the three rows of R, world to camera."""
 SHIFT: Final = 9
-"""Where a view vector has t, world to camera, metres."""
+"""Index in a view vector of t, world to camera, metres."""
 FOCAL_X, FOCAL_Y, CENTRE_X, CENTRE_Y = 12, 13, 14, 15
-"""Where a view vector has the focal length and the centre, pixels."""
+"""Index in a view vector of the focal length and the centre, pixels."""
 DEPTH: Final = 16
-"""Where a view vector has the depth of scaled orthography, metres; 0 there means true
+"""Index in a view vector of the depth of scaled orthography, metres; 0 there means true
 perspective."""
 VIEW: Final = 17
-"""Numbers of a view vector."""
+"""Length of a view vector."""
 
 
 @compiled
 def seen_at(view: Vector, x: float, y: float, z: float) -> tuple[float, float, float]:
-    """(u, v, depth): where a view, of true perspective, shows a place of the world; pixels, metres.
+    """(u, v, depth) of a world point in a view of true perspective; pixels, metres.
 
-    What is nearer than NEAREST_M, or behind the camera, is shown as if it were so near.
+    A point nearer than NEAREST_M, or behind the camera, is projected as if at NEAREST_M.
     """
     depth = view[AHEAD] * x + view[AHEAD + 1] * y + view[AHEAD + 2] * z + view[SHIFT + 2]
     across = view[ACROSS] * x + view[ACROSS + 1] * y + view[ACROSS + 2] * z + view[SHIFT]
@@ -104,12 +104,12 @@ def limb_primitive(frames: Floats, body: Vector, limb: int, view: Vector, out: V
     Args:
         frames: (10, FRAME).
         body: Body vector.
-        limb: Which one, as in LIMBS.
+        limb: Index in LIMBS.
         view: (VIEW,).
         out: (PRIMITIVE,), written.
 
     Returns:
-        False where it is not before the camera.
+        False where the limb is not in front of the camera.
     """
     long, short, height = limb_size(body, limb)
     ax, ay, depth_a = view[SHIFT], view[SHIFT + 1], view[SHIFT + 2]
@@ -142,7 +142,7 @@ def limb_primitive(frames: Floats, body: Vector, limb: int, view: Vector, out: V
 def draw_placed(
     frames: Floats, body: Vector, view: Vector, limbs: int, width: int, bits: Bits
 ) -> None:
-    """OR some placed limbs (as bits of LIMBS) into packed rows (H, words)."""
+    """OR some placed limbs (bits of LIMBS) into packed rows (H, words)."""
     height = bits.shape[0]
     p = np.empty(PRIMITIVE)
     first, last = np.empty(height, np.int32), np.empty(height, np.int32)
@@ -172,10 +172,10 @@ def match(
         body: Body vector.
         pose: The 25 motion parameters.
         view: (VIEW,).
-        limbs: As bits of LIMBS.
-        width: Of the picture, pixels.
+        limbs: Limbs as bits of LIMBS.
+        width: Width of the picture, pixels.
         seen: The silhouette, packed (H, words).
-        seen_px: Its number of pixels.
+        seen_px: Number of its pixels.
     """
     return match_over(np.zeros_like(seen), body, pose, view, limbs, width, seen, seen_px)
 
@@ -191,7 +191,7 @@ def match_over(
     seen: Bits,
     seen_px: int,
 ) -> float:
-    """The same where a rest (H, words) of the body is drawn already; it is left as it was."""
+    """The same where the rest (H, words) of the body is drawn already; the rest is not changed."""
     drawn = rest.copy()
     draw_limbs(body, pose, view, limbs, width, drawn)
     return score(count_both(drawn, seen), count(drawn), seen_px)
@@ -199,7 +199,7 @@ def match_over(
 
 @lru_cache(maxsize=16)
 def view_of(camera: Camera, depth_m: float = 0.0) -> Vector:
-    """A camera as the kernel wants it; with a depth: scaled orthography at that depth (T19)."""
+    """A camera as a view vector; with a depth: scaled orthography at that depth (T19)."""
     K = camera.K
     tail = [K[0][0], K[1][1], K[0][2], K[1][2], depth_m]
     return np.concatenate([np.ravel(camera.R), camera.t, tail]).astype(np.float64)
@@ -213,7 +213,7 @@ def draw_body(body: Vector, pose: Vector, view: Vector, size: tuple[int, int]) -
 
 
 def warm() -> float:
-    """Compile the kernel or load it from numba's cache; returns the seconds that it took."""
+    """Compile the kernel or load it from numba's cache; returns the seconds that took."""
     began = time.perf_counter()
     view = np.concatenate([np.eye(3).ravel(), np.zeros(3), [100.0, 100.0, 80.0, 60.0, 4.0]])
     draw_body(body_vector(thesis_bdp(1.75)), rest_pose(), view, (160, 120))

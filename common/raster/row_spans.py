@@ -19,21 +19,21 @@ from common.compiled import compiled
 from common.raster.bits import ONES, Bits, popcount
 
 Columns = NDArray[np.int32]
-"""(H,): of each row of the picture, the first or the last pixel of an interval."""
+"""(H,): for each row of the picture, the first or the last pixel of an interval."""
 Tangent = tuple[float, float, float, float]
 """A line that touches both discs: (at, slope, first y, last y), x = at + slope y."""
 
 EDGE: Final = 1e-9
 
 LANES: Final = 8
-"""Rows that a processor takes at once: a whole number of them needs no slow remainder."""
+"""Number of rows that a processor handles at once: whole multiples need no slow remainder."""
 
 PRIMITIVE: Final = 8
-"""A limb in the picture: x, y, r of one disc, of the other, shear, stretch."""
+"""A limb in the picture: x, y, r of each of two discs, then shear and stretch."""
 
 
 def inside(primitive: Vector, x_px: float, y_px: float) -> bool:
-    """Whether a point of the picture lies in a limb: the definition that the kernel is held to.
+    """Whether a point of the picture lies in a limb: the definition that the kernel must match.
 
     In the sheared picture the limb is every disc of radius r(t) around c(t), 0 <= t <= 1, with
     c and r linear between its two ends.
@@ -69,7 +69,7 @@ def _tangent(p: Vector, nx: float, ny: float) -> Tangent:
 
 @compiled
 def _cut_first(x: float, width: int) -> np.int32:
-    """First pixel of the picture whose centre is not left of x + 0.5; width where there is none."""
+    """First pixel whose centre is not left of x + 0.5; the width where there is none."""
     return np.int32(np.ceil(min(max(x, 0.0), float(width))))
 
 
@@ -90,9 +90,10 @@ def _rows_of_steep(
     first: Columns,
     last: Columns,
 ) -> None:
-    """Row intervals of a limb with a tangent on either side: that, and each end's disc beyond it.
+    """Row intervals of a limb with a tangent on either side: the tangents, and each end's disc
+    beyond.
 
-    The loop has no branches and no order, so that a processor takes several rows at once.
+    The loop has no branches and no order, so that a processor handles several rows at once.
     """
     at_1, slope_1, from_1, to_1 = left
     at_2, slope_2, from_2, to_2 = right
@@ -143,18 +144,18 @@ def _rows_of_all(
 def spans(p: Vector, width: int, height: int, first: Columns, last: Columns) -> tuple[int, int]:
     """Row intervals of a limb: first and last pixel of each row, cut to the picture.
 
-    A limb is mostly so steep that rows lie between its tangents: then one of these is its left
-    side and one its right, and the rows of each end are one disc's.
+    Most limbs are so steep that rows lie between the tangents: then one tangent is the left side
+    and one the right, and the rows at each end belong to one disc.
 
     Args:
         p: (PRIMITIVE,).
         width: Of the picture, pixels.
         height: Of the picture.
-        first: (height,) int32, written for the rows that are returned; `last` likewise. A row
-            without a pixel has first > last.
+        first: (height,) int32, written for the returned rows; `last` likewise. A row without a
+            pixel has first > last.
 
     Returns:
-        (top, bottom): the rows from top to bottom - 1 are written; the limb is in no other.
+        (top, bottom): rows top to bottom - 1 are written; the limb is in no other row.
     """
     ay, ra, by, rb = p[1], p[2] + EDGE, p[4], p[5] + EDGE
     top = min(height, max(0, math.ceil(min(ay - ra, by - rb) - 0.5)))
@@ -195,7 +196,7 @@ def draw(first: Columns, last: Columns, top: int, bottom: int, bits: Bits) -> No
 def gain(
     first: Columns, last: Columns, top: int, bottom: int, base: Bits, seen: Bits
 ) -> tuple[int, int]:
-    """What a limb adds to a drawn rest: (pixels newly drawn, those of them that are seen).
+    """The pixels that a limb adds to a drawn rest: (number added, number of those that are seen).
 
     Args:
         first: (H,) first pixels of the limb's rows, `last` likewise.
@@ -223,7 +224,7 @@ def gain(
 
 @compiled
 def undraw(top: int, bottom: int, base: Bits, bits: Bits) -> None:
-    """Bring packed rows from top to bottom - 1 back to what they were before limbs were drawn."""
+    """Restore packed rows top to bottom - 1 to their state before limbs were drawn."""
     for row in range(top, bottom):
         for word in range(base.shape[1]):
             bits[row, word] = base[row, word]

@@ -1,4 +1,4 @@
-"""How alike two silhouettes are: the score that every search maximises, in plain numpy."""
+"""Similarity of two silhouettes: the score that every search maximises, in plain numpy."""
 
 import math
 
@@ -17,7 +17,7 @@ def similarity(seen: Mask, drawn: Mask) -> float:
     it adds. Two empty masks score 0: no person is there (P9). An empty `seen` scores exp(-1)
     whatever is drawn, so S alone never tells whether a person is present (M25).
 
-    The kernel computes the same from packed bits; this is what it is held against.
+    The kernel computes the same from packed bits and is tested against this function.
 
     Args:
         seen: (H, W) mask from the camera.

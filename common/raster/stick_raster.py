@@ -1,4 +1,4 @@
-"""The stick body drawn: its parts as primitives, and what some of them add to a drawn rest."""
+"""The stick body drawn: its parts as primitives, and the pixels that parts add to a drawn rest."""
 
 import math
 from typing import Final
@@ -20,7 +20,7 @@ WITHOUT_ARMS: Final = 0b110000111111
 
 @compiled
 def _primitive(ends: Floats, part: Vector, pose: Vector, wide: float, out: Vector) -> None:
-    """A part of the placed body as the kernel draws limbs (`spans`)."""
+    """A part of the placed body in the form in which the kernel draws limbs (`row_spans`)."""
     row = int(part[0])
     ax, ay = ends[row, 0], ends[row, 1]
     dx, dy = ends[row, 2] - ax, ends[row, 3] - ay
@@ -44,7 +44,7 @@ def _primitive(ends: Floats, part: Vector, pose: Vector, wide: float, out: Vecto
 
 @compiled
 def widening(breadth: float, depth: float) -> float:
-    """How wide an elliptic trunk looks that shows so much of its breadth."""
+    """Apparent width of an elliptic trunk that shows this share of its breadth."""
     return math.sqrt(breadth * breadth + depth * depth * (1.0 - breadth * breadth))
 
 
@@ -79,9 +79,10 @@ def added(
     last: Columns,
     p: Vector,
 ) -> tuple[int, int]:
-    """What placed segments add to the drawn rest: (pixels newly drawn, those that are seen).
+    """The pixels that segments add to the drawn rest: (number added, number of those that are
+    seen).
 
-    `scratch` is a copy of the rest before and after.
+    `scratch` is a copy of the rest, before the call and after it.
     """
     height = seen.shape[0]
     highest, lowest = height, 0

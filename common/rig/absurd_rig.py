@@ -1,4 +1,4 @@
-"""Rigs that no room has, refused before a run unless the user insists, and those of little use."""
+"""Refusal of rigs that no room has, unless the user insists, and warnings of rigs of little use."""
 
 import math
 from itertools import combinations
@@ -12,29 +12,31 @@ from common.rig.rig_file import CalibrationError
 from common.rig.upright_camera import quarters_of
 
 FOCALS: Final = (0.2, 20.0)
-"""Focal lengths in widths of the picture: a fisheye, a telescope."""
+"""Bounds of the focal length, picture widths: a fisheye, a telescope."""
 APART_DEG: Final = (30.0, 150.0)
-"""Two cameras that look less or more apart see nearly one silhouette, as it is or in a mirror."""
+"""Smallest angle between two cameras' axes, degrees; below it both show nearly one silhouette,
+or its mirror image."""
 TOGETHER_M, APART_M = 0.05, 60.0
 DEEP_M: Final = 1.0
-"""A camera this deep under the floor has another floor."""
+"""Depth of a camera below the floor, metres, from which on the floor must be wrong."""
 NO_UP: Final = 0.2
-"""How much of a camera's own up, at least, is up in the world; less where y is not up at all."""
+"""Smallest part of a camera's own up axis along the world's y; below it y is not up."""
 ALIKE: Final = 0.8
-"""Two cameras whose ups agree by this are level, whatever way the world's y goes; unless they are
-rolled, and agree better once their pictures are turned upright."""
+"""Smallest agreement of two cameras' up axes that counts as level, whatever the world's y;
+unless they are rolled, and agree better once their pictures are turned upright."""
 HUNG_M: Final = 0.2
-"""Cameras that hang upside down are over the floor; where y points down they are not."""
+"""Whether cameras are over the floor: upside-down ones are, except where the world's y points
+down."""
 INSIST: Final = (
     "calibrate again, or trust it (--trust-calibration, trust_calibration = true in settings)"
 )
 
 
 def refuse_absurd(rig: Rig, where: str) -> None:
-    """Refuse a rig two cameras of which, or one, could stand in no room.
+    """Refuse a rig in which one camera, or two together, could stand in no room.
 
     Raises:
-        CalibrationError: With the camera's name, what is absurd and what to do.
+        CalibrationError: With the camera's name, the fault and the cure.
     """
     for first, second in combinations(rig.cameras, 2):
         _refuse_absurd_pair((first, second), where)
@@ -78,21 +80,23 @@ def _refuse_absurd_pair(pair: tuple[Camera, Camera], where: str) -> None:
 
 
 def _is_rolled(pair: tuple[Camera, Camera], ups: list[Vector]) -> bool:
-    """Whether cameras whose ups, (3,) each, are alike and not y are rolled in a world of y up."""
+    """Whether cameras whose up axes, (3,) each, agree with each other but not with y are rolled,
+    in a world with y up."""
     turned = [_up_when_turned(camera) for camera in pair]
     hangs = max(float(centre(camera)[1]) for camera in pair) > HUNG_M
     return bool(turned[0] @ turned[1] >= ups[0] @ ups[1] and hangs)
 
 
 def _up_when_turned(camera: Camera) -> Vector:
-    """The camera's own up, (3,), once its picture is turned upright by quarter turns."""
+    """The camera's own up axis, (3,), once its picture is turned upright by quarter turns."""
     right, down = np.array(camera.R)[:2]
     up: Vector = (-down, -right, down, right)[quarters_of(camera)]
     return up
 
 
 def nearly_one_view(rig: Rig) -> str:
-    """What to say of two cameras that look nearly the same way, or at each other; "" of others."""
+    """A warning about two cameras that look nearly the same way, or at each other; "" for
+    others."""
     if len(rig.cameras) != 2:
         return ""
     one, other = (np.array(camera.R)[2] for camera in rig.cameras)

@@ -18,9 +18,9 @@ PAPER_ROTATIONS: Final = (
 )
 """World to camera for camera 1 (looks along -z) and camera 2 (looks along +x) (C1)."""
 ROUNDING: Final = 1e-6
-"""By so little, in metres and as a sine, numbers that were written down and read are off."""
+"""Rounding of numbers in a written calibration, metres, and as a sine."""
 TOWARDS: Final = (1.0, -1.0, -1.0)
-"""From a camera's axes to those in which y is up and z towards it."""
+"""From a camera's axes to axes with y up and z towards the camera."""
 
 
 Row = tuple[float, float, float]
@@ -48,11 +48,11 @@ class Rig(msgspec.Struct, frozen=True, cache_hash=True):
     cameras: tuple[Camera, ...]
     fps: float | None = None
     distortion: tuple[float, ...] = ()
-    """Holds for every camera that has none of its own."""
+    """Size for every camera that has none of its own."""
 
 
 class PaperRig(NamedTuple):
-    """What the paper's equations need of a rig whose cameras look along -z and +x (C1)."""
+    """The numbers of the paper's equations for a rig whose cameras look along -z and +x (C1)."""
 
     focal_1_px: float
     focal_2_px: float
@@ -81,9 +81,9 @@ def paper_rig(
 
 @lru_cache(maxsize=4)
 def as_paper_rig(rig: Rig) -> PaperRig | None:
-    """The paper's four numbers for a rig that stands as its own does, else None.
+    """The paper's four numbers for a rig in its exact arrangement, else None.
 
-    A rig that nearly does is none: what its calibration knows would be lost.
+    A rig that is nearly so gives None: its calibration knows more than the four numbers.
     """
     if len(rig.cameras) != 2:
         return None
@@ -112,7 +112,7 @@ class Arrays(NamedTuple):
 
 @lru_cache(maxsize=16)
 def arrays_of(camera: Camera) -> Arrays:
-    """A camera's numbers, made into arrays once."""
+    """A camera's numbers as arrays, converted once."""
     K, R, t = np.array(camera.K), np.array(camera.R), np.array(camera.t)
     arrays = Arrays(K, R, t, -R.T @ t, np.array([K[0, 0], K[1, 1]]), K[:2, 2].copy())
     for array in arrays:
@@ -146,7 +146,8 @@ def project(camera: Camera, points_m: Vector) -> Vector:
 
 @compiled
 def _on_plane(points_m: Floats, R: Floats, t: Vector) -> Floats:
-    """Where the rays from points (n, 3) cross the plane at depth 1, (n, 2); NaN where none does."""
+    """Intersections of the rays from the camera through points (n, 3) with the plane at depth 1,
+    (n, 2); NaN for a point behind."""
     plane = np.full((len(points_m), 2), np.nan)
     for n in range(len(points_m)):
         x, y, z = points_m[n, 0], points_m[n, 1], points_m[n, 2]
@@ -158,7 +159,7 @@ def _on_plane(points_m: Floats, R: Floats, t: Vector) -> Floats:
 
 
 def px_per_m(camera: Camera, point_m: Vector) -> float:
-    """How many pixels a metre across the line of sight takes at a point: focal length / depth.
+    """Pixels per metre across the line of sight at a point: focal length / depth.
 
     NaN where the point is not in front of the camera.
     """
@@ -167,7 +168,7 @@ def px_per_m(camera: Camera, point_m: Vector) -> float:
 
 
 def ray(camera: Camera, pixel: tuple[float, float]) -> Vector:
-    """Direction in the world, shape (3,), unit length, of what a pixel shows."""
+    """Direction in the world, shape (3,), unit length, of a pixel's ray."""
     K, R, _, _, focal_px, middle_px = arrays_of(camera)
     if any(camera.distortion):
         x, y = cv2.undistortPoints(np.array([[pixel]], float), K, np.array(camera.distortion))[0, 0]
@@ -179,7 +180,7 @@ def ray(camera: Camera, pixel: tuple[float, float]) -> Vector:
 
 
 def rays(camera: Camera, pixels: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Directions in the world, (n, 3) of unit length, of what pixels (n, 2) show, undistorted."""
+    """Directions in the world, (n, 3) of unit length, of the rays of pixels (n, 2), undistorted."""
     known, plane = arrays_of(camera), np.ones((len(pixels), 3))
     plane[:, :2] = (pixels - known.middle_px) / known.focal_px
     found: NDArray[np.float64] = plane @ known.R

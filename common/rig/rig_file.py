@@ -1,4 +1,4 @@
-"""Calibrations read from their file, checked, and fitted to the size of pictures."""
+"""Calibrations: read from their file, checked, scaled to the size of pictures."""
 
 import json
 from pathlib import Path
@@ -11,11 +11,11 @@ from common.config.explained import explained
 from common.rig.camera import Rig, as_matrix
 
 DISTORTIONS: Final = (0, 4, 5, 8, 12, 14)
-"""How many numbers OpenCV's distortion models have."""
+"""Possible lengths of OpenCV's distortion models."""
 
 
 class CalibrationError(ValueError):
-    """A calibration that is none: its text names the file, the fault and the cure."""
+    """An invalid calibration: the text names the file, the fault and the cure."""
 
 
 def load_rig(path: Path, wanted: tuple[str, ...] = ()) -> Rig:
@@ -26,7 +26,7 @@ def load_rig(path: Path, wanted: tuple[str, ...] = ()) -> Rig:
         wanted: Names of the cameras to keep, in this order; all when empty.
 
     Raises:
-        CalibrationError: When the file cannot be read, misses a part, or contradicts itself.
+        CalibrationError: When the file cannot be read, lacks a part, or contradicts itself.
     """
     try:
         rig = msgspec.json.decode(path.read_bytes(), type=Rig)
@@ -72,7 +72,7 @@ def check_rig(rig: Rig, where: str) -> None:
     """Refuse a rig that no cameras could form.
 
     Raises:
-        CalibrationError: With the camera's name, the number that was got and what was expected.
+        CalibrationError: With the camera's name, the number and what was expected.
     """
     if rig.width <= 0 or rig.height <= 0:
         raise CalibrationError(f"{where}: picture size {rig.width}x{rig.height} is not positive")

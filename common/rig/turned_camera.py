@@ -1,4 +1,4 @@
-"""A camera that was turned where it stands: how its picture shifts, and back."""
+"""A camera turned in place: the shift of its picture from the turn, and the turn from the shift."""
 
 import math
 
@@ -12,11 +12,11 @@ from common.rig.upright import Shift
 
 
 def turn_of(shift: Shift, focal_px: Vector) -> Vector:
-    """The turn (3, 3) of what a camera sees, in its own axes, that shifts its picture so.
+    """The turn (3, 3) of the scene, in the camera's axes, that shifts the picture so.
 
     Args:
         shift: How far the picture's middle moves, and how far the picture rolls about it.
-        focal_px: (2,) across and down.
+        focal_px: (2,) focal lengths across and down.
     """
     ahead = np.array([shift.right_px / focal_px[0], shift.down_px / focal_px[1], 1.0])
     ahead /= np.linalg.norm(ahead)
@@ -28,7 +28,7 @@ def turn_of(shift: Shift, focal_px: Vector) -> Vector:
 
 
 def shift_of(turn: Vector, focal_px: Vector) -> Shift:
-    """The shift of a picture by a turn: the other way round than `turn_of`."""
+    """The shift of a picture by a turn; the inverse of `turn_of`."""
     ahead = turn[:, 2] / turn[2, 2]
     level = Shift(float(ahead[0] * focal_px[0]), float(ahead[1] * focal_px[1]), 0.0)
     roll = turn_of(level, focal_px).T @ turn
@@ -37,11 +37,11 @@ def shift_of(turn: Vector, focal_px: Vector) -> Shift:
 
 
 def angle_deg(turn: Vector) -> float:
-    """By how much a turn (3, 3) turns."""
+    """The angle of a turn (3, 3)."""
     return math.degrees(math.acos(max(-1.0, min(1.0, (float(np.trace(turn)) - 1.0) / 2.0))))
 
 
 def turned(camera: Camera, turn: Vector) -> Camera:
-    """The camera at its place after what it sees has turned by (3, 3) in its own axes."""
+    """The camera in place after the scene has turned by (3, 3) in its axes."""
     R, t = turn @ np.array(camera.R), turn @ np.array(camera.t)
     return msgspec.structs.replace(camera, R=as_matrix(R), t=as_row(t))

@@ -1,4 +1,4 @@
-"""How the picture that is worked on lies: upright, with square pixels, shifted."""
+"""How the working picture comes from the file's: turned upright, square pixels, shifted."""
 
 import msgspec
 
@@ -7,36 +7,36 @@ Size = tuple[int, int]
 
 
 class Upright(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """How the picture that is worked on comes from that of the file."""
+    """How the working picture comes from that of the file."""
 
     width: int
-    """Of the file's picture at the working size, as `--size` bounds it; `height` likewise."""
+    """Width of the file's picture at the working size, as `--size` bounds it; `height` likewise."""
     height: int
     quarters: int
-    """By how many quarter turns it is turned clockwise, after its pixels were made square."""
+    """Clockwise quarter turns, after the pixels were made square."""
     square_width: int
-    """Of the same with square pixels; `square_height` likewise."""
+    """The same with square pixels; `square_height` likewise."""
     square_height: int
 
     @property
     def size(self) -> Size:
-        """Of the picture that is worked on."""
+        """Size of the working picture."""
         return swapped((self.square_width, self.square_height), self.quarters)
 
 
 class Shift(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """How a picture lies against what the same camera showed at the start of the run."""
+    """Displacement of a picture since the start of the run."""
 
     right_px: float
-    """How far to the right what was in its middle is now."""
+    """Motion of the picture's middle to the right, pixels."""
     down_px: float
     roll_deg: float
-    """By how much it has turned about its middle, clockwise."""
+    """Clockwise rotation about the middle."""
 
 
 Uprights = tuple[Upright | None, ...]
-"""Of each view, in the order of the rig's cameras; None: the picture that is worked on is the
-file's, made smaller."""
+"""For each view, in the order of the rig's cameras; None: the working picture is the file's,
+reduced."""
 
 
 def swapped(size: Size, quarters: int) -> Size:

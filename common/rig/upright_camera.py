@@ -1,4 +1,4 @@
-"""Cameras made upright by quarter turns, with square pixels; and places of their pictures."""
+"""Cameras made upright by quarter turns, with square pixels; and the mapping of picture places."""
 
 from typing import Final
 
@@ -12,20 +12,21 @@ from common.rig.rig_file import CalibrationError
 from common.rig.upright import Size, Upright
 
 CLOCKWISE: Final = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
-"""A quarter turn of a camera's axes, with which its picture turns clockwise."""
+"""A quarter turn of a camera's axes that turns its picture clockwise."""
 SQUARE: Final = 0.01
-"""Pixels whose sides differ by less are square enough for what looks at pictures."""
+"""Relative difference of a pixel's sides below which pixels count as square."""
 TILTED_SENSOR: Final = 12
-"""From this place on OpenCV's distortion tilts the sensor, first about x: no quarter turn keeps
-that order."""
+"""Index from which on OpenCV's distortion coefficients tilt the sensor, first about x: no
+quarter turn keeps that order."""
 
 
 def upright_of(camera: Camera, size: Size) -> Upright | None:
-    """What makes a camera's picture upright and its pixels square; None where it is so already.
+    """The change that makes a camera's picture upright and its pixels square; None where it is so
+    already.
 
     Args:
-        camera: Calibrated, for pictures of this size.
-        size: Of the file's picture at the working size.
+        camera: Calibrated for pictures of this size.
+        size: Size of the file's picture at the working size.
     """
     quarters, square = quarters_of(camera), size
     aspect = camera.K[1][1] / camera.K[0][0]
@@ -38,17 +39,17 @@ def upright_of(camera: Camera, size: Size) -> Upright | None:
 
 
 def quarters_of(camera: Camera) -> int:
-    """The quarter turns clockwise after which the world's y points up most nearly, 0 to 3."""
+    """The clockwise quarter turns after which the world's y points up most nearly, 0 to 3."""
     right, down = np.array(camera.R)[:2, 1]
     return int(np.argmax(np.round([-down, -right, down, right], 9)))
 
 
 def upright_camera(camera: Camera, upright: Upright | None) -> Camera:
-    """The camera of the picture that is worked on.
+    """The camera of the working picture.
 
     Args:
-        camera: Of the file's picture at the working size.
-        upright: What is done with that.
+        camera: The camera of the file's picture at the working size.
+        upright: The change of the picture.
 
     Raises:
         CalibrationError: When its distortion cannot be turned.
@@ -60,7 +61,7 @@ def upright_camera(camera: Camera, upright: Upright | None) -> Camera:
 
 
 def filed_camera(camera: Camera, upright: Upright | None) -> Camera:
-    """The other way round than `upright_camera`."""
+    """The inverse of `upright_camera`."""
     if upright is None:
         return camera
     return _scaled(_turned(camera, upright.size, -upright.quarters % 4), 1.0 / _shrinks(upright))
@@ -83,7 +84,7 @@ def _turned(camera: Camera, size: Size, quarters: int) -> Camera:
 
 
 def _turned_distortion(camera: Camera, quarters: int) -> tuple[float, ...]:
-    """What bends towards an axis bends towards the axis that this becomes."""
+    """Coefficients that bend towards an axis go to the axis that this one becomes."""
     bent = list(camera.distortion)
     if quarters and any(bent[TILTED_SENSOR:]):
         raise CalibrationError(
@@ -99,7 +100,7 @@ def _turned_distortion(camera: Camera, quarters: int) -> tuple[float, ...]:
 
 
 def as_filed(pixels: NDArray[np.float64], upright: Upright | None) -> NDArray[np.float64]:
-    """Places (n, 2) of the picture that is worked on, in the file's at the working size."""
+    """Places (n, 2) of the working picture, in the file's picture at the working size."""
     if upright is None:
         return pixels
     (width, height), at = upright.size, pixels
@@ -110,7 +111,7 @@ def as_filed(pixels: NDArray[np.float64], upright: Upright | None) -> NDArray[np
 
 
 def as_worked_on(pixels: NDArray[np.float64], upright: Upright | None) -> NDArray[np.float64]:
-    """The other way round than `as_filed`."""
+    """The inverse of `as_filed`."""
     if upright is None:
         return pixels
     at = pixels * _shrinks(upright)
@@ -122,5 +123,5 @@ def as_worked_on(pixels: NDArray[np.float64], upright: Upright | None) -> NDArra
 
 
 def _shrinks(upright: Upright) -> Vector:
-    """How much smaller the picture is with square pixels, across and down."""
+    """Scale factors that make pixels square, across and down."""
     return np.array([upright.square_width, upright.square_height]) / [upright.width, upright.height]

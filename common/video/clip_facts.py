@@ -1,4 +1,4 @@
-"""What a run knows of its clip."""
+"""What a run knows about its clip."""
 
 from bisect import bisect_right
 from collections.abc import Iterable
@@ -13,7 +13,7 @@ from common.rig.upright import Upright, Uprights, swapped
 from common.video.pictures import Ending, Source
 
 TOUCH_S: Final = 1e-6
-"""By which times that are written as fractions of a second may be off."""
+"""Tolerance of times that are written as fractions of a second."""
 
 
 class Act(msgspec.Struct, frozen=True):
@@ -21,23 +21,23 @@ class Act(msgspec.Struct, frozen=True):
 
     name: str
     first: int
-    """Its first frame; `last` is its last."""
+    """First frame; `last` is the last one."""
     last: int
 
 
 class Meta(msgspec.Struct, frozen=True):
-    """What a clip's `meta.json` tells; keys that are not listed here are left alone."""
+    """The content of a clip's `meta.json`; unlisted keys are ignored."""
 
     performer: str = ""
     posture: str = ""
     posture_id: int | None = None
-    """-1: what is shown is no posture, whatever `posture` calls it."""
+    """Number of the posture; -1: no posture of the model, whatever `posture` calls it."""
     take: int = 0
     acts: tuple[Act, ...] = ()
-    """What is performed when, where a clip holds more than one posture."""
+    """The performances in a clip that holds several."""
     fps: float | None = None
     capture_s: dict[str, tuple[float, ...]] = {}
-    """When each frame of a camera was taken, where frames are missing."""
+    """Capture times of a camera's frames, where frames are missing."""
 
 
 class ClipView(msgspec.Struct, frozen=True):
@@ -50,33 +50,33 @@ class ClipView(msgspec.Struct, frozen=True):
     """Width and height to work at, upright."""
     fps: float
     frames: int
-    """How many its file claims; 0 for a camera."""
+    """Number of frames that the file claims; 0 for a camera."""
     capture_s: tuple[float, ...] = ()
-    """When each frame of a file was taken, where its rate varies."""
+    """Capture times of a file's frames, where the rate varies."""
     background: str = ""
-    """A picture or video of the empty room; "" where there is none."""
+    """Path of a picture or video of the empty background; "" where there is none."""
     upright: Upright | None = None
-    """How the picture that is worked on comes from the file's; None: it is that, made smaller."""
+    """How the working picture comes from the file's; None: reduced alone."""
     picked: tuple[int, ...] = ()
-    """Those of its frames that are looked at, where the other view is slower; (): all."""
+    """Indices of the frames to process, where the other view is slower; (): all."""
     late_s: float = 0.0
-    """By how much its own times are late: they are set back by it."""
+    """Delay of this view: its times are set back by it."""
     name: str = ""
-    """Of its camera; as in a clip folder, by its number, when empty."""
+    """Camera name; as in a clip folder, by its number, where empty."""
 
     def __post_init__(self) -> None:
-        """Name it by its number where it has no name of its own."""
+        """Give the view its number as a name where it has none."""
         if not self.name:
             msgspec.structs.force_setattr(self, "name", f"cam{self.number}")
 
     @property
     def quarters(self) -> int:
-        """By how many quarter turns clockwise its pictures are turned."""
+        """Clockwise quarter turns of its pictures."""
         return 0 if self.upright is None else self.upright.quarters
 
     @property
     def filed_size(self) -> tuple[int, int]:
-        """Of the file's picture at the working size, as it lies there."""
+        """Size of the file's picture at the working size, as stored."""
         return self.size if self.upright is None else (self.upright.width, self.upright.height)
 
     @property
@@ -90,32 +90,32 @@ class ClipView(msgspec.Struct, frozen=True):
         return swapped((width, height), self.upright.quarters)
 
     def captured_s(self, index: int) -> float:
-        """When a frame of a file was taken, seconds since the clip began.
+        """Capture time of a file's frame, seconds since the clip began.
 
-        Frames beyond the end of `capture_s` follow its last at the frame rate.
+        Frames beyond the end of `capture_s` continue at the frame rate.
         """
         return self._own_s(index) - self.late_s
 
     def frames_in(self, lasts_s: float) -> int:
-        """How many frames are taken from the first on before so long is over: one, at least."""
+        """Number of frames within that many seconds from the first on; at least one."""
         until_s, count = self.captured_s(0) + lasts_s - TOUCH_S, 1
         while self.captured_s(count) < until_s:
             count += 1
         return count
 
     def every(self, every: int) -> int:
-        """Every how manieth frame is to be decoded, where every n-th of a clip is looked at."""
+        """Decoding stride, where every n-th frame of a clip is processed."""
         return 1 if self.picked else every
 
     def next_s(self, index: int, every: int) -> float:
-        """When the frame is taken that is looked at after one, at the earliest."""
+        """Earliest time of the next processed frame."""
         if not self.picked:
             return self.captured_s(index + every)
         place = bisect_right(self.picked, index)
         return self.captured_s(self.picked[place] if place < len(self.picked) else self.frames)
 
     def is_looked_at(self, index: int) -> bool:
-        """Whether a frame is, of those that are decoded."""
+        """Whether a decoded frame is processed."""
         if not self.picked:
             return True
         place = bisect_right(self.picked, index)
@@ -136,25 +136,25 @@ class Clip(msgspec.Struct, frozen=True):
     views: tuple[ClipView, ...]
     every: int
     rig: Rig | None
-    """Calibration at the working size, one camera a view; None where there is none."""
+    """Calibration at the working size, one camera per view; None where there is none."""
     meta: Meta
     warnings: tuple[str, ...] = ()
-    """What is odd but does not stop a run."""
+    """Oddities that do not stop a run."""
     body: Bdp | None = None
-    """The person's lengths, metres, where they were measured before."""
+    """The person's lengths, metres, where an earlier clip measured them."""
 
 
 def unread(view: ClipView, ending: Ending) -> bool:
-    """Whether the end of a video is lost: it was cut off, or is damaged.
+    """Whether the end of a video is missing: it was cut off, or is damaged.
 
-    One that claims too many frames, as its duration is the sound's or an edit list hides some of
-    them, is whole: FFmpeg reads it without complaint.
+    A video that claims too many frames, as where its duration is the sound's or an edit list hides
+    some, is complete: FFmpeg reads it without complaint.
     """
     return ending.damaged > 0 and ending.frames < view.frames
 
 
 def shortfall(view: ClipView, ending: Ending) -> str:
-    """What to say of a video that could not be read to its end, or is damaged; "" if neither."""
+    """A warning about a video that could not be read to its end, or is damaged; "" if neither."""
     if unread(view, ending):
         read = f"{ending.frames} of {view.frames} frames could be read"
         return f"{view.source} was cut off or is damaged: {read}; copy or record it again"
@@ -165,7 +165,7 @@ def shortfall(view: ClipView, ending: Ending) -> str:
 
 
 def unread_facts(endings: Iterable[tuple[ClipView, Ending]]) -> dict[str, Any]:
-    """Of the videos whose end is lost, for the summary: how many frames were read of how many."""
+    """For the summary, the videos whose end is missing: frames read of frames claimed."""
     lost = {
         str(view.source): {"read": ending.frames, "of": view.frames}
         for view, ending in endings
@@ -175,14 +175,14 @@ def unread_facts(endings: Iterable[tuple[ClipView, Ending]]) -> dict[str, Any]:
 
 
 def set_back(clip: Clip, late_s: float) -> Clip:
-    """The clip with the times of its second view set back by so much more."""
+    """The clip with the times of its second view set back by that much more."""
     first, second = clip.views
     second = msgspec.structs.replace(second, late_s=second.late_s + late_s)
     return msgspec.structs.replace(clip, views=(first, second))
 
 
 def clip_summary(clip: Clip) -> dict[str, Any]:
-    """Of what a run is, for its summary, as the clip says itself."""
+    """Facts of the clip for a run's summary."""
     return {
         "clip": clip.name,
         "cameras": [*camera_names(clip)],
@@ -192,7 +192,7 @@ def clip_summary(clip: Clip) -> dict[str, Any]:
 
 
 def camera_names(clip: Clip) -> tuple[str, ...]:
-    """Names of the rig's cameras in their order: two at least, also where one is looked at."""
+    """Names of the rig's cameras in order: two at least, even where one is used."""
     own = {view.number: view.name for view in clip.views}
     return tuple(own.get(number, f"cam{number}") for number in _numbers(clip))
 
@@ -204,7 +204,7 @@ def uprights_of(clip: Clip) -> Uprights:
 
 
 def whole_rig(clip: Clip) -> Rig | None:
-    """The clip's rig with a camera for each number; one that is not looked at gets another's."""
+    """The clip's rig with a camera for each number; an unused number gets another's camera."""
     if clip.rig is None:
         return None
     own = {view.number: camera for view, camera in zip(clip.views, clip.rig.cameras, strict=True)}
@@ -213,5 +213,5 @@ def whole_rig(clip: Clip) -> Rig | None:
 
 
 def _numbers(clip: Clip) -> range:
-    """Of the rig's cameras, up to the last that is looked at."""
+    """Capture rates of the rig's cameras, up to the last one used."""
     return range(1, max(2, *(view.number for view in clip.views)) + 1)

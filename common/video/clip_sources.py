@@ -1,4 +1,4 @@
-"""Footage: the files and cameras that a run's settings name, not yet looked into."""
+"""The files and cameras that a run's settings name, not opened yet."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -10,33 +10,33 @@ from common.config.settings import Settings
 from common.video.pictures import Source
 
 COMPANIONS: Final = {".json", ".npz", ".txt", ".csv", ".toml", ".md", ".png", ".jpg", ".jpeg"}
-"""Files that may stand beside `cam1.*` under the same name and are no video of it."""
+"""Suffixes of files that may stand beside `cam1.*` and are no videos."""
 CLIP_CAMERAS: Final = tuple(f"cam{n + 1}" for n in range(MOST_VIEWS))
-"""Names of the cameras of a clip folder, by their numbers."""
+"""Names of a clip folder's cameras, by their numbers."""
 NOTHING: Final = "there is nothing to look at: set clip, or cameras.cam1 with source or device"
-"""Said of settings that name no footage."""
+"""The message for settings without a clip or camera."""
 
 
 class ClipError(ValueError):
-    """A clip that cannot be used: one line that names the thing and the cure."""
+    """An unusable clip: one line that names the file and the cure."""
 
 
 class Footage(NamedTuple):
-    """A view as the settings or the folder name it, not yet looked at."""
+    """A view as the settings or the folder name it, not opened yet."""
 
     number: ViewerNumber
     source: Source
     settings: CameraSettings
     name: str
-    """Of the camera."""
+    """Name of the camera."""
 
 
 def footage_of(settings: Settings) -> list[Footage]:
-    """The cameras that settings or their clip folder have, by their numbers.
+    """The cameras in the settings or their clip folder, by number.
 
     Raises:
-        ClipError: When the clip folder is none, holds no video, too many of one camera or of more
-            cameras than there may be; when a camera has no video.
+        ClipError: When the clip folder does not exist, holds no video, two videos of one camera or
+            too many cameras; when a camera has no video.
     """
     names = [*settings.cameras, *(name for name in CLIP_CAMERAS if name not in settings.cameras)]
     cameras = {name: settings.cameras.get(name, CameraSettings()) for name in names}
@@ -55,10 +55,10 @@ def footage_of(settings: Settings) -> list[Footage]:
 
 
 def numbers_of(names: Sequence[str]) -> dict[str, ViewerNumber]:
-    """The viewers of cameras: cam1 to cam8 have their numbers, others the lowest that are free.
+    """Viewer numbers for cameras: cam1 to cam8 keep theirs, others get the lowest free ones.
 
     Raises:
-        ClipError: When there are more cameras than there may be.
+        ClipError: When there are too many cameras.
     """
     if len(names) > MOST_VIEWS:
         raise ClipError(f"{len(names)} cameras ({', '.join(names)}): keep {MOST_VIEWS} at most")
@@ -68,23 +68,23 @@ def numbers_of(names: Sequence[str]) -> dict[str, ViewerNumber]:
 
 
 def first_camera(settings: Settings) -> str:
-    """Name of camera 1, which settings may not speak of."""
+    """Name of camera 1, which the settings need not mention."""
     numbers = numbers_of([*settings.cameras])
     return next((name for name, number in numbers.items() if number == 1), CLIP_CAMERAS[0])
 
 
 def refuse_no_footage(settings: Settings, path: Path) -> None:
-    """See that the settings of a file name something to look at.
+    """Refuse settings without a clip or camera.
 
     Raises:
-        ClipError: When they do not, or as `footage_of`.
+        ClipError: When they have none, or as `footage_of`.
     """
     if not footage_of(settings):
         raise ClipError(f"{path}: {NOTHING}")
 
 
 def _source_of(name: str, camera: CameraSettings, clip: str) -> Source | None:
-    """A camera's device or video, or the clip's video of its name."""
+    """A camera's device or video, or the clip folder's video of its name."""
     if camera.device >= 0:
         return camera.device
     if camera.source:
@@ -109,7 +109,7 @@ def _in_folder(folder: Path, name: str) -> str | None:
 
 
 def _refuse_a_ninth(folder: Path) -> None:
-    """Its video would be left out without a word."""
+    """The message for a camera whose video the settings would silently leave out."""
     for path in _videos(folder, f"cam{MOST_VIEWS + 1}"):
         raise ClipError(
             f"{folder} has {path.name}: a clip has {MOST_VIEWS} cameras at most, cam1.* to "
@@ -126,7 +126,7 @@ def _videos(folder: Path, name: str) -> list[Path]:
 
 
 def companions_folder(settings: Settings, named: list[Footage]) -> Path:
-    """Where to look for what goes with the videos."""
+    """The folder for files that belong to the videos."""
     if settings.clip:
         return Path(settings.clip)
     files = [Path(view.source) for view in named if isinstance(view.source, str)]

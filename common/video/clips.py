@@ -1,4 +1,4 @@
-"""Clips: where the frames of a run come from, checked before it begins."""
+"""Clips: the sources of a run's frames, checked before it begins."""
 
 import math
 from collections.abc import Collection, Iterator, Sequence
@@ -26,11 +26,11 @@ from common.video.upright_views import filed_rig, upright_views
 from common.video.view_pair import refuse_missing, refuse_same_source
 
 SAME_ASPECT: Final = 0.02
-"""Pictures whose sides have ratios that differ by less show the same, at two sizes."""
+"""Largest difference of aspect ratios at which two sizes show the same picture."""
 AVI_HEAD: Final = b"RIFF"
 
 CAMERA_HZ: Final = 15.0
-"""Taken for the rate of a camera that names none: the paper's (P1)."""
+"""Frame rate assumed for a camera that reports none: the paper's (P1)."""
 
 
 def open_clip(
@@ -38,18 +38,18 @@ def open_clip(
     decoder: Decoder | None = None,
     numbers: Collection[ViewerNumber] | None = None,
 ) -> Clip:
-    """Find and check all that a run needs to know of its pictures.
+    """Open and check the sources of a run's pictures.
 
     Args:
-        settings: Name a clip folder, or a file or camera for each view, or both: a view's own
-            source goes before the folder's.
-        decoder: Looks into the files; a new one when None. Pass one to save its start.
-        numbers: The cameras to look at; the others are not touched, as they may be on other hosts.
-            None: all.
+        settings: They name a clip folder, or a file or camera for each view, or both: a view's own
+            source takes precedence.
+        decoder: Reads the files; None: a new one. Passing one saves its start.
+        numbers: The cameras to open; the others may be on other hosts and are not touched. None:
+            all.
 
     Raises:
-        ClipError: When something is missing, empty, no video, or contradicts the rest; when two
-            views are of one camera; when no cameras stand as the calibration has them.
+        ClipError: When something is missing, empty, no video, or inconsistent; when two views are
+            of one camera; when the calibration's cameras cannot be matched.
     """
     found = footage_of(settings)
     if not found:
@@ -89,7 +89,7 @@ def _refuse_absurd(clip: Clip) -> None:
 
 
 def meta_of(settings: Settings) -> Meta:
-    """What the `meta.json` beside a clip's videos tells; the videos are not looked into.
+    """The content of `meta.json` beside a clip's videos, which are not opened.
 
     Raises:
         ClipError: When there is no such clip, or the file cannot be read.
@@ -98,7 +98,7 @@ def meta_of(settings: Settings) -> Meta:
 
 
 def find_calibration(settings: Settings, folder: Path) -> Path | None:
-    """The calibration that a run uses: the one named, else the clip's, else its parent folder's."""
+    """The calibration of a run: the one named, else the clip's, else its parent folder's."""
     if settings.calibration:
         return Path(settings.calibration)
     for place in (folder, folder.resolve().parent):
@@ -151,15 +151,15 @@ def _view(named: Footage, settings: Settings, meta: Meta, decoder: Decoder) -> C
 
 
 def _told_s(meta: Meta, named: Footage) -> tuple[float, ...]:
-    """When a file's frames were taken, by what stands beside it."""
+    """Capture times of a file's frames, from the files beside it."""
     return meta.capture_s.get(named.name, ()) if isinstance(named.source, str) else ()
 
 
 def probed(source: Source, decoder: Decoder) -> VideoInfo:
-    """What a file or camera is.
+    """The facts of a file or camera.
 
     Raises:
-        ClipError: When it is not there, may not be read, is empty, or has no picture.
+        ClipError: When it does not exist, cannot be read, is empty, or has no picture.
     """
     if isinstance(source, str):
         refuse_unreadable(Path(source))
@@ -173,7 +173,8 @@ def probed(source: Source, decoder: Decoder) -> VideoInfo:
 
 
 def _refuse_another_scene(named: Footage, plate: VideoInfo, info: VideoInfo) -> None:
-    """A picture of another shape was cropped, or is of another camera; its size does not matter."""
+    """A picture of another shape was cropped, or comes from another camera; the size does not
+    matter."""
     aspect = plate.width * info.height / (plate.height * info.width)
     if abs(aspect - 1.0) > SAME_ASPECT:
         raise ClipError(
@@ -184,10 +185,10 @@ def _refuse_another_scene(named: Footage, plate: VideoInfo, info: VideoInfo) -> 
 
 
 def refuse_unreadable(path: Path) -> None:
-    """See that a file is there, holds anything, and may be read.
+    """Refuse a file that does not exist, is empty, or cannot be read.
 
     Raises:
-        ClipError: When not.
+        ClipError: When it cannot be used.
     """
     if path.is_dir():
         raise ClipError(f"{path} is a folder: name a file in it")
@@ -205,7 +206,8 @@ def refuse_unreadable(path: Path) -> None:
 
 
 def _refuse_a_lost_head(path: Path) -> None:
-    """OpenCV finds pictures behind a lost head too, but makes up their rate and number."""
+    """OpenCV decodes a file with a damaged header too, but then makes up rate and number of
+    frames."""
     with path.open("rb") as file:
         if path.suffix.lower() == ".avi" and file.read(4) != AVI_HEAD:
             raise ClipError(f"{path} is no AVI from its first byte on: copy or record it again")
@@ -214,7 +216,7 @@ def _refuse_a_lost_head(path: Path) -> None:
 def _rig(
     settings: Settings, folder: Path, found: Sequence[Footage], views: tuple[ClipView, ...]
 ) -> Rig | None:
-    """The calibration of those cameras of a clip that are looked at, at their working size."""
+    """The calibration of the cameras in use, at their working size."""
     path = find_calibration(settings, folder)
     if path is None:
         return None
@@ -233,10 +235,10 @@ def _rig(
 def _places(
     rig: Rig, found: Sequence[Footage], wanted: Sequence[ViewerNumber], path: Path
 ) -> list[int]:
-    """Where cameras stand in a calibration: as the settings call them, by name, or by number.
+    """Indices of cameras in a calibration: by the settings' names, by name, or by number.
 
     Raises:
-        ClipError: When the calibration lacks one, or has other cameras too and no such names.
+        ClipError: When the calibration lacks one, or has other cameras and different names.
     """
     names = [camera.name for camera in rig.cameras]
     by_name = all(one.name in names for one in found if not one.settings.calibrated_as)

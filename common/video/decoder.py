@@ -1,4 +1,4 @@
-"""The child that decodes: it answers one source a line."""
+"""The decoding child process: it answers one source per line."""
 
 import itertools
 import json
@@ -28,26 +28,26 @@ from common.video.pictures import Image, Source, cure, named
 from common.video.reduction import reduced
 
 SIGN_OF_LIFE: Final = 100
-"""While frames are passed over, the asker hears every so many that the work goes on."""
+"""While frames are skipped, the child reports progress every so many frames."""
 
 
 PROGRESSIVE: Final = "make it progressive (ffmpeg -i IN -vf yadif -c:v mjpeg -q:v 2 OUT.avi)"
-"""The cure of a video of fields."""
+"""The cure for an interlaced video."""
 
 
 class Refused(ValueError):
-    """A source of which no pictures can be made; the text names it and the cure."""
+    """A source that cannot be decoded; the text names it and the cure."""
 
 
 @dataclass(frozen=True, slots=True)
 class Grabbed:
-    """A frame of the source; without its picture where that was not asked for or is broken."""
+    """A frame of the source; without a picture where none was asked for or it is broken."""
 
     index: int
     grabbed_s: float
     picture: Image | None
     damaged: bool = False
-    """The decoder met damage in it, or before it."""
+    """The decoder met damage in this frame, or before it."""
 
 
 class OpenFilm(NamedTuple):
@@ -71,13 +71,13 @@ def main(asker: Asker) -> None:
 
 
 def serve(request: dict[str, Any], answers: Answers, complaints: Complaints) -> None:
-    """Say what a source is, send its frames at each size given, else their times; then END.
+    """Send what a source is, its frames at each size asked for, or else their times; then END.
 
     Raises:
-        Refused: When no pictures can be made of it, also in its middle.
+        Refused: When it cannot be decoded, even in its middle.
     """
     source, sizes = request["source"], request["sizes"]
-    complaints.taken()  # of the source before
+    complaints.taken()  # left over from the source before
     film = opened(source, request["every"], request["start"], complaints)
     first = next((grab for grab in film.grabs if grab.picture is not None), None)
     if first is None or first.picture is None:
@@ -96,12 +96,13 @@ def serve(request: dict[str, Any], answers: Answers, complaints: Complaints) -> 
         elif grab.index % SIGN_OF_LIFE == 0:
             say(answers, SKIPPED, grab)
             answers.flush()
-    damaged += bool(complaints.taken())  # a missing end is complained of after the last frame
+    damaged += bool(complaints.taken())  # FFmpeg reports a missing end after the last frame
     say(answers, END, Grabbed(came, time.monotonic(), None), DAMAGED.pack(damaged))
 
 
 def say_times(source: Source, answers: Answers) -> None:
-    """Send when each packet of a file is to be shown, seconds; none of a camera or a picture."""
+    """Send the presentation time of each packet of a file, seconds; none for a camera or a
+    picture."""
     if not isinstance(source, str) or cv2.haveImageReader(source):
         return
     packets = cv2.VideoCapture(source, cv2.CAP_FFMPEG, [cv2.CAP_PROP_FORMAT, -1])
@@ -115,13 +116,13 @@ def say_times(source: Source, answers: Answers) -> None:
 
 
 def opened(source: Source, every: int, start: int, complaints: Complaints) -> OpenFilm:
-    """A video, a camera, or a still picture as a film of one frame.
+    """A video, a camera, or a still picture as a video of one frame.
 
     Args:
-        source: Of the pictures.
-        every: Only frames whose index is a multiple of it are decoded to pictures ...
+        source: The file or camera.
+        every: Only frames whose index is a multiple of it are decoded to pictures, ...
         start: ... and only the very first one and those from this index on.
-        complaints: What is said of it.
+        complaints: FFmpeg's messages about it.
     """
     if isinstance(source, str) and cv2.haveImageReader(source) and cv2.imcount(source) == 1:
         return OpenFilm(0.0, 1, iter([Grabbed(0, time.monotonic(), cv2.imread(source))]))
@@ -134,14 +135,13 @@ def opened(source: Source, every: int, start: int, complaints: Complaints) -> Op
 
 
 def judged(taken: Iterator[Grabbed], source: str, complaints: Complaints) -> Iterator[Grabbed]:
-    """The frames of a file, and in which of them the decoder met damage.
+    """The frames of a file, each with whether the decoder met damage.
 
-    Complaints up to the first frame do not count as damage: a video that was trimmed may begin in
-    the middle of a stream.
+    Messages up to the first frame do not count as damage: a trimmed video may begin in the middle
+    of a stream.
 
     Raises:
-        Refused: When a frame is interlaced: OpenCV reports success but fills in no
-            picture.
+        Refused: When a frame is interlaced: OpenCV reports success but leaves the picture empty.
     """
     for grab in taken:
         said = complaints.taken()
@@ -151,7 +151,7 @@ def judged(taken: Iterator[Grabbed], source: str, complaints: Complaints) -> Ite
 
 
 def grabs(capture: cv2.VideoCapture, every: int, start: int) -> Iterator[Grabbed]:
-    """Every frame, decoded to a picture where that is wanted."""
+    """Every frame, decoded to a picture where wanted."""
     for index in itertools.count():
         if not capture.grab():
             return
@@ -163,7 +163,7 @@ def grabs(capture: cv2.VideoCapture, every: int, start: int) -> Iterator[Grabbed
 def say(
     answers: Answers, kind: bytes, grab: Grabbed | None = None, *parts: bytes | memoryview
 ) -> None:
-    """Send one answer; pictures at once, so that a live one does not wait."""
+    """Send one answer; pictures immediately, so that a live one does not wait."""
     index, grabbed_s = (grab.index, grab.grabbed_s) if grab else (0, 0.0)
     length = sum(memoryview(part).nbytes for part in parts)
     answers.write(HEADER.pack(MAGIC, kind, index, grabbed_s, length))

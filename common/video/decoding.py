@@ -1,7 +1,7 @@
-"""Frames of a video or a camera, decoded by a child process that may die in our place.
+"""Frames of a video or camera, decoded by a child process that may crash in our place.
 
-OpenCV aborts the whole process on some uncompressed AVIs. So no process of ours decodes: it asks
-a child (common/video/decoder.py), which reads one source after another, shrinks the pictures and
+OpenCV aborts the whole process on some uncompressed AVIs. So none of our processes decodes: it asks
+a child (common/video/decoder.py), which reads one source after another, reduces the pictures and
 sends them through a pipe.
 """
 
@@ -31,7 +31,7 @@ from common.video.pictures import (
 )
 
 HEADER: Final = struct.Struct("<4scIdI")
-"""What goes before every answer: magic, kind, index, grabbed_s, bytes that follow."""
+"""Header of every answer: magic, kind, index, grabbed_s, number of bytes that follow."""
 MAGIC: Final = b"ttf1"
 INFO: Final = b"i"
 TIMES: Final = b"t"
@@ -41,15 +41,16 @@ END: Final = b"e"
 REFUSED: Final = b"r"
 
 MAX_TEXT_BYTES: Final = 1 << 16
-"""No answer but a picture is longer."""
+"""Upper bound of an answer other than a picture, bytes."""
 TIMES_AT_ONCE: Final = 4096
-"""So many times of packets are in one answer: a long film's take a while to read."""
+"""Number of packet times in one answer: those of a long video take a while to read."""
 
 DAMAGED: Final = struct.Struct("<I")
-"""What END carries: as `Ending.damaged`."""
+"""Payload of END: `Ending.damaged`."""
 
 STALL_S: Final = 10.0
-"""A child that gives nothing for so long is stuck: opening a slow camera takes 3 s."""
+"""Seconds without an answer after which a child counts as stuck: opening a slow camera takes 3
+s."""
 
 
 class _Answer(msgspec.Struct, frozen=True):
@@ -62,14 +63,14 @@ class _Answer(msgspec.Struct, frozen=True):
 class Decoder:
     """Reads source after source through one child.
 
-    The child starts with the first source; one that broke, or was left in the middle of a source,
+    The child starts with the first source. One that crashed, or was left in the middle of a source,
     is replaced at the next.
     """
 
     def __init__(self, stall_s: float = STALL_S) -> None:
-        """No child yet; one that gives nothing for `stall_s` will count as stuck."""
+        """No child yet; it will count as stuck after `stall_s` without an answer."""
         self.ending = Ending()
-        """Of the source that was last read to its end."""
+        """The ending of the last source that was read to its end."""
         self._stall_s = stall_s
         self._child: Child | None = None
         self._lock = threading.Lock()
@@ -90,19 +91,19 @@ class Decoder:
         return child.pid if child else None
 
     def start(self, source: Source) -> None:
-        """Begin the child before a source is asked for: a new Python imports for seconds.
+        """Start the child before a source is asked for: a new Python imports for seconds.
 
         Raises:
-            DecoderDied: When this was stopped.
+            DecoderDied: When this decoder was stopped.
         """
         self._ready(source)
 
     def probe(self, source: Source) -> VideoInfo:
-        """What a source is; its first picture is decoded for that.
+        """The facts of a source; its first picture is decoded for them.
 
         Raises:
-            Undecodable: When it has none.
-            DecoderDied: When the child broke on it.
+            Undecodable: When it has no picture.
+            DecoderDied: When the child crashed on it.
         """
         info, *after = self._answers(source, [], ALL)
         told = msgspec.json.decode(info.payload.tobytes(), type=VideoInfo)
@@ -115,11 +116,11 @@ class Decoder:
     ) -> Generator[Decoded, None, None]:
         """The wanted pictures of a source, reduced to `size`.
 
-        Those before `wanted.start` are passed over, which is faster than to decode them.
+        Frames before `wanted.start` are skipped, which is faster than decoding them.
 
         Raises:
-            Undecodable: When it has none.
-            DecoderDied: When the child broke on it; what came before is good.
+            Undecodable: When it has no picture.
+            DecoderDied: When the child crashed on it; the pictures before are valid.
         """
         sizes = [size] if wanted.large is None else [size, wanted.large]
         for answer in self._answers(source, sizes, wanted):
@@ -131,14 +132,14 @@ class Decoder:
                 self.ending = Ending(answer.index, damaged)
 
     def stop(self) -> None:
-        """End it for good, from any thread; whoever reads its frames then meets DecoderDied."""
+        """Stop for good, from any thread; a thread that reads its frames then gets DecoderDied."""
         with self._lock:
             self._stopped = True
             if self._child is not None:
                 self._child.kill()
 
     def close(self) -> None:
-        """End the child and let go of its pipes; the next source gets a new one."""
+        """End the child and close its pipes; the next source gets a new child."""
         with self._lock:
             if self._child is not None:
                 self._child.close()
@@ -147,7 +148,7 @@ class Decoder:
     def _answers(
         self, source: Source, sizes: list[Size], wanted: Wanted
     ) -> Generator[_Answer, None, None]:
-        """INFO, then FRAMEs and SKIPPEDs if any size is asked for, else TIMES; then END."""
+        """INFO, then FRAMEs and SKIPPEDs if a size is asked for, else TIMES; then END."""
         child, frames, whole = self._ready(source), 0, False
         try:
             told = {"every": wanted.every, "start": wanted.start, "quarters": wanted.quarters}
@@ -176,7 +177,7 @@ class Decoder:
 
 
 def _pictures(payload: NDArray[np.uint8], sizes: list[Size]) -> list[Image]:
-    """The pictures that stand one after the other in the payload of a FRAME."""
+    """The pictures that follow each other in the payload of a FRAME."""
     ends = np.cumsum([3 * width * height for width, height in sizes])
     parts = np.split(payload, ends[:-1])
     return [part.reshape(h, w, 3) for part, (w, h) in zip(parts, sizes, strict=True)]

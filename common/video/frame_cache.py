@@ -1,4 +1,4 @@
-"""What was decoded of a source, kept for the next reading of it where it is small enough."""
+"""Decoded pictures of a source, kept for its next reading where they are small enough."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -7,23 +7,23 @@ from typing import Final
 from common.video.pictures import ALL, Decoded, Ending, Reader, Size, Source, Wanted
 
 MOST_BYTES: Final = 1 << 27
-"""What a reel keeps at most: 38 s at 320x240 and 15 frames a second, 2.5 minutes at 160x120."""
+"""Upper bound of the cache, bytes: 38 s at 320x240 and 15 Hz, 2.5 minutes at 160x120."""
 
 
 class Reel:
-    """Reads a clip through a decoder; what was read to its end and is small is decoded once.
+    """Reads a clip through a decoder; a small clip that was read to its end is decoded once.
 
-    A clip is read to learn its room and again to follow who is in it. A reel is for one clip: it
-    does not notice that a file has changed.
+    A clip is read once to learn the background and again to track. A reel serves one clip: it does
+    not notice that the file has changed.
     """
 
     def __init__(self, decoder: Reader, most_bytes: int = MOST_BYTES, due: int = 0) -> None:
-        """Nothing kept yet.
+        """Empty at first.
 
         Args:
             decoder: Reads the clip.
-            most_bytes: What is kept at most.
-            due: How many frames it claims to have; of one that claims too many none is kept.
+            most_bytes: Upper bound of the cache.
+            due: Number of frames that the clip claims; if that is too many, no frame is kept.
         """
         self._decoder = decoder
         self._due = due
@@ -33,7 +33,7 @@ class Reel:
 
     @property
     def ending(self) -> Ending:
-        """Of the source that was last decoded to its end."""
+        """The ending of the last source that was decoded to its end."""
         return self._decoder.ending
 
     def frames(self, source: Source, size: Size, wanted: Wanted = ALL) -> Iterator[Decoded]:
@@ -41,7 +41,7 @@ class Reel:
 
         Raises:
             Undecodable: When it has none.
-            DecoderDied: When the decoder broke on it; what came before is good.
+            DecoderDied: When the decoder crashed on it.
         """
         asked = (source, size, wanted.quarters)
         if wanted.large is None and asked == self._named:
@@ -54,7 +54,7 @@ class Reel:
     def _keeping(
         self, pictures: Iterator[Decoded], asked: tuple[Source, Size, int]
     ) -> Iterator[Decoded]:
-        """Hand all pictures on, and keep them once they are known to be all and to fit."""
+        """Yield all pictures, and keep them once they are known to be complete and to fit."""
         kept: list[Decoded] = []
         fits = self._most_bytes // (3 * math.prod(asked[1]))
         if self._due > fits:
@@ -72,15 +72,15 @@ class Reel:
 
 
 class Told:
-    """Reads through another reader, and tells which share of a number of frames has come."""
+    """Reads through another reader, and reports the share of the expected frames so far."""
 
     def __init__(self, reader: Reader, due: int, tell: Callable[[float], object]) -> None:
-        """Nothing told yet; of more frames than are `due` nothing more is."""
+        """No report yet; beyond `due` frames there are no more reports."""
         self._reader, self._due, self._tell = reader, max(1, due), tell
 
     @property
     def ending(self) -> Ending:
-        """Of the source that was last read to its end."""
+        """The ending of the last source that was read to its end."""
         return self._reader.ending
 
     def frames(self, source: Source, size: Size, wanted: Wanted = ALL) -> Iterator[Decoded]:

@@ -1,4 +1,4 @@
-"""When the frames of a film were taken: what its packets tell where its rate varies."""
+"""Capture times of a video's frames: from its packets where the rate varies."""
 
 from typing import Final
 
@@ -9,13 +9,14 @@ from common.body.body import Vector
 from common.video.pictures import VideoInfo
 
 ROUNDED_S: Final = 0.002
-"""Matroska rounds times to milliseconds: a frame that is nearer to its place keeps the rate."""
+"""Tolerance of times, seconds: Matroska rounds to milliseconds; a frame nearer to its place
+keeps the rate."""
 LAST_GAPS: Final = 2
-"""How long the last frame may stand, in the longest of the gaps before it."""
+"""Largest duration of the last frame, over the longest of the gaps before it."""
 
 
 def timed(info: VideoInfo) -> VideoInfo:
-    """A film's facts as the times of its packets have them.
+    """The facts of a video with the times of its packets.
 
     Returns:
         Where the rate varies, `shown_s` has the time of each frame in their order, increasing from

@@ -1,4 +1,4 @@
-"""Pictures of a video or a camera, how they are asked for, and why there are none."""
+"""Pictures of a video or camera: how they are requested, and the errors where there are none."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 STILLS: Final = {".png", ".jpg", ".jpeg", ".bmp", ".webp", ".tif", ".tiff"}
-"""How names of single pictures end."""
+"""Suffixes of single pictures."""
 
 Image = NDArray[np.uint8]
 """(height, width, 3), blue, green, red."""
 
 Source = str | int
-"""A file, or the number of a camera of this host."""
+"""A file, or the index of a camera of this host."""
 
 Size = tuple[int, int]
 """Width and height, pixels."""
@@ -26,7 +26,7 @@ class Undecodable(ValueError):
 
 
 class DecoderDied(RuntimeError):
-    """The child broke on a source: the text names it, how far it came, how it died, the cure."""
+    """The child crashed on a source: the text names it, the frames read, the cause and the cure."""
 
     def __init__(self, source: Source, frames: int, how: str) -> None:
         """After `frames` frames of `source`."""
@@ -40,7 +40,7 @@ class DecoderDied(RuntimeError):
 
 
 class CameraLost(DecoderDied):
-    """A camera that gives no more pictures, as one that was unplugged: it has no end of its own."""
+    """A camera that gives no more pictures, as when unplugged: a camera has no normal end."""
 
     def __init__(self, source: int, frames: int) -> None:
         """After `frames` frames of `source`."""
@@ -53,29 +53,30 @@ class CameraLost(DecoderDied):
 
 
 class VideoInfo(msgspec.Struct, frozen=True):
-    """What a source says of itself; only the size was seen."""
+    """What a source reports of itself; only the size was verified."""
 
     width: int
     height: int
     fps: float
-    """0 where it names none."""
+    """0 where it reports none."""
     frames: int
-    """0 where it names none, as a camera."""
+    """0 where it reports none, as for a camera."""
     shown_s: tuple[float, ...] = ()
-    """When a file's pictures are to be shown, by its packets: in their order, not in time's."""
+    """Presentation times of a file's pictures, by its packets: in the order of pictures, not of
+    time."""
 
 
 class Wanted(NamedTuple):
-    """Which pictures of a source are asked for, and in which sizes besides the first."""
+    """Which pictures of a source are requested, and in which sizes besides the first."""
 
     every: int = 1
-    """Every n-th."""
+    """Stride: every n-th frame."""
     start: int = 0
-    """None before this place in the source."""
+    """No picture before this index."""
     large: Size | None = None
-    """A second size of each."""
+    """A second size of each picture."""
     quarters: int = 0
-    """By how many quarter turns clockwise each is turned; sizes are of what that gives."""
+    """Clockwise quarter turns of each picture; sizes are after the turn."""
 
 
 ALL: Final = Wanted()
@@ -85,41 +86,41 @@ class Ending(NamedTuple):
     """How far a source could be read."""
 
     frames: int = 0
-    """How many it really had."""
+    """The true number of frames."""
     damaged: int = 0
-    """In how many of them, or behind them, the decoder met damage."""
+    """Number of frames in or after which the decoder met damage."""
 
 
 class Decoded(msgspec.Struct, frozen=True):
     """One picture of a source."""
 
     index: int
-    """Number of the frame in the source, also where only every n-th is taken."""
+    """Index of the frame in the source, also where only every n-th is used."""
     grabbed_s: float
-    """When it was grabbed, by this host's monotonic clock."""
+    """Time of the grab, by this host's monotonic clock."""
     picture: Image
     large: Image | None = None
-    """The frame's picture at the second size, where one was asked for."""
+    """The picture at the second size, where one was requested."""
 
 
 class Reader(Protocol):
-    """Whatever gives the pictures of a source: a decoder, or a reel before it."""
+    """A source of pictures: a decoder, or a reel before it."""
 
     @property
     def ending(self) -> Ending:
-        """Of the source that was last read to its end."""
+        """The ending of the last source that was read to its end."""
 
     def frames(self, source: Source, size: Size, wanted: Wanted = ALL) -> Iterator[Decoded]:
         """The wanted pictures of a source, reduced to `size`."""
 
 
 def named(source: Source) -> str:
-    """A source as a message names it."""
+    """The name of a source in messages."""
     return f"camera {source}" if isinstance(source, int) else source
 
 
 def cure(source: Source) -> str:
-    """What to do about a source that cannot be read."""
+    """The cure for a source that cannot be read."""
     if isinstance(source, int):
         return "see that it is plugged in and that no other program holds it"
     if Path(source).suffix.lower() in STILLS:

@@ -1,4 +1,4 @@
-"""Pictures made smaller: at the size that is worked on, and as JPEG."""
+"""Reduced pictures: at the working size, and as JPEG."""
 
 from collections.abc import Sequence
 from typing import Final
@@ -9,13 +9,13 @@ import numpy as np
 from common.video.pictures import Image
 
 JPEG_QUALITY: Final = 70
-"""Of 100, as OpenCV counts it: a page shows several pictures a second."""
+"""JPEG quality, of 100, as OpenCV counts it: a page shows several pictures a second."""
 
 
 def reduced(picture: Image, size: Sequence[int], quarters: int) -> Image:
-    """A picture turned clockwise by quarter turns, and then of another size (width, height).
+    """A picture turned clockwise by quarter turns and resized to (width, height).
 
-    Each pixel is the mean of what it covers (P1).
+    Each pixel is the mean of the area that it covers (P1).
     """
     width, height = size
     lying = (height, width) if quarters % 2 else (width, height)

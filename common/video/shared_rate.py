@@ -1,4 +1,4 @@
-"""Videos of different rates: of the faster those frames are looked at that meet the slowest's."""
+"""Videos of different rates: the faster one is sampled at the frames nearest to the slowest's."""
 
 from typing import Final
 
@@ -9,21 +9,22 @@ from common.body.body import Vector
 from common.video.clip_facts import TOUCH_S, ClipView
 
 SAME_RATE: Final = 0.01
-"""Frame rates that differ by less drift apart by less than a frame in a clip of 100."""
+"""Relative difference of frame rates that are treated as equal: they drift apart by less than a
+frame in 100."""
 SAME_VARYING: Final = 0.05
-"""The same where a view's frames have times of their own, which pair them: its rate is that of its
-usual gap, which times that are rounded to milliseconds tell no better (33 ms of 33.3)."""
+"""The same where a view's frames have times of their own, which pair them: the rate is that of
+the median gap, which times rounded to milliseconds give no better (33 ms of 33.3)."""
 
 
 def at_one_rate(views: tuple[ClipView, ...], every: int) -> tuple[ClipView, ...]:
     """The views of a clip, at the rate of the slowest.
 
-    A frame without a partner would have the body follow one view alone for a moment, again and
-    again, which is less exact than all at a lower rate.
+    Without a partner frame the body would follow one view alone for a moment, again and again,
+    which is less accurate than all views at a lower rate.
 
     Args:
-        views: A camera's frames come when they come.
-        every: Every n-th frame of the slowest is looked at.
+        views: The views of the clip; live cameras are not resampled.
+        every: Stride: every n-th frame of the slowest view is processed.
     """
     if len(views) < 2 or not all(view.frames for view in views):
         return views
@@ -37,8 +38,8 @@ def _is_faster(view: ClipView, slow: ClipView) -> bool:
 
 
 def _meeting(fast: ClipView, slow: ClipView, every: int) -> ClipView:
-    """The faster view, with the frames nearest to those of the slower: each at most once, and none
-    that is farther than half of its own period."""
+    """The faster view, with the frames nearest to those of the slower: each at most once, and
+    none farther than half of its own period."""
     own_s, wanted_s = _times_s(fast), _times_s(slow)[::every]
     after = np.clip(np.searchsorted(own_s, wanted_s), 1, len(own_s) - 1)
     nearest = after - (wanted_s - own_s[after - 1] < own_s[after] - wanted_s)

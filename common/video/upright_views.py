@@ -1,4 +1,4 @@
-"""The views of a clip with pictures that are upright, whatever way its cameras are rolled."""
+"""A clip's views with upright pictures, however its cameras are rolled."""
 
 import msgspec
 
@@ -10,11 +10,11 @@ from common.video.clip_sources import ClipError
 
 
 def upright_views(rig: Rig, views: tuple[ClipView, ...]) -> tuple[Rig, tuple[ClipView, ...]]:
-    """The rig and the views as they are worked on.
+    """The rig and the views with working pictures.
 
     Args:
-        rig: A camera a view, of the files' pictures at the working size.
-        views: Their pictures as they lie in the files.
+        rig: A camera per view, for the files' pictures at the working size.
+        views: Their pictures as stored in the files.
 
     Raises:
         ClipError: When the distortion of a camera cannot be turned.
@@ -30,7 +30,7 @@ def upright_views(rig: Rig, views: tuple[ClipView, ...]) -> tuple[Rig, tuple[Cli
 
 
 def filed_rig(clip: Clip) -> Rig | None:
-    """A clip's rig for its files' pictures at the working size, as they lie there."""
+    """A clip's rig for its files' pictures at the working size, as stored."""
     if clip.rig is None:
         return None
     pairs = zip(clip.rig.cameras, clip.views, strict=True)

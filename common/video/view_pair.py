@@ -20,16 +20,16 @@ WITHOUT: Final = (
 def refuse_missing(
     settings: Settings, found: Sequence[Footage], asked: Collection[ViewerNumber] | None
 ) -> None:
-    """See that all cameras are there that are asked for.
+    """Refuse a clip without all the cameras asked for.
 
     Args:
-        settings: Of the run.
-        found: The cameras that they and their clip have.
-        asked: The cameras to use; None: all. A clip has two at least, and none is left out before
-            its last.
+        settings: The run's settings.
+        found: The cameras in the settings and the clip.
+        asked: The cameras to use; None: all. A clip has two at least, and only its last ones may be
+            left out.
 
     Raises:
-        ClipError: When one is not there; a file that may be its video is named.
+        ClipError: When one does not exist; the message names a file that may be its video.
     """
     there = [each.number for each in found]
     of_a_folder = any(_is_of_the_folder(each, settings) for each in found)
@@ -61,7 +61,7 @@ def _without(settings: Settings, found: Sequence[Footage], missing: ViewerNumber
 
 
 def _likely(folder: Path, found: Collection[str], missing: ViewerNumber) -> str:
-    """The name of a file that may be the missing camera's video; "" where there is none."""
+    """Name of a file that may be the missing camera's video; "" where there is none."""
     names = [
         path.name
         for path in sorted(folder.iterdir())
@@ -71,10 +71,10 @@ def _likely(folder: Path, found: Collection[str], missing: ViewerNumber) -> str:
 
 
 def refuse_same_source(named: list[Footage]) -> None:
-    """See that two views are not of one video or camera: such a pair tells nothing of depth.
+    """Refuse two views of one video or camera: such a pair contains no depth.
 
     Raises:
-        ClipError: When they are.
+        ClipError: When two are the same.
     """
     for first, second in combinations(named, 2):
         if _is_same(first.source, second.source):
