@@ -1,1 +1,1 @@
-"""Where the cameras are, and whether that can be believed."""
+"""Camera calibration, and tests of whether a calibration is believable."""

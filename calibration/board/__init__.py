@@ -1,1 +1,2 @@
-"""Cameras by a printed board: its corners, the rig that they give, the floor, the coverage."""
+"""Calibration with a printed board: its corners, the rig that they give, the floor, the
+coverage."""

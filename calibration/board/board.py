@@ -1,4 +1,4 @@
-"""The board that cameras are calibrated by: a ChArUco pattern of our own, or a chessboard."""
+"""The calibration board: a ChArUco pattern of our own, or a chessboard."""
 
 import re
 from functools import lru_cache
@@ -13,11 +13,11 @@ from common.rig.rig_file import CalibrationError
 
 Paper = Literal["a4", "a3"]
 SHEETS_MM: Final[dict[Paper, tuple[float, float]]] = {"a4": (297.0, 210.0), "a3": (420.0, 297.0)}
-"""Width and height, laid across."""
+"""Width and height of the sheet, landscape."""
 MARKER_SHARE: Final = 0.75
-"""How much of a square's side a marker takes."""
+"""Side of a marker over that of a square."""
 BITS: Final = 6
-"""Cells of a marker's side, its black border included."""
+"""Number of cells along a marker's side, its black border included."""
 DICTIONARY: Final = cv2.aruco.DICT_4X4_50
 LEAST_SQUARES: Final = 3
 MOST_SQUARES: Final = 30
@@ -27,25 +27,26 @@ class Board(NamedTuple):
     """A flat pattern of squares. Its inner corners are numbered in rows, from the top left."""
 
     columns: int
-    """Squares across."""
+    """Number of squares across."""
     rows: int
     square_m: float
     first_marker: int | None
-    """The number of its first marker; None of a chessboard, which has none."""
+    """Number of its first marker; None for a chessboard, which has none."""
 
 
 BOARDS: Final[dict[Paper, Board]] = {
     "a4": Board(5, 4, 0.048, 0),
     "a3": Board(5, 4, 0.070, 10),
 }
-"""What is printed; each has markers of its own, so that a video says which it shows."""
+"""The boards to print; each has markers of its own, so that a video shows which one it is."""
 
 
 def chessboard(squares: str, square_m: float) -> Board:
     """A chessboard by its count of squares, such as 9x6.
 
     Raises:
-        CalibrationError: When that is no count, or of a board that looks the same turned about.
+        CalibrationError: When it is no count, or belongs to a board that looks the same upside
+        down.
     """
     told = re.fullmatch(r"(\d+)x(\d+)", squares)
     if not told:
@@ -65,7 +66,7 @@ def chessboard(squares: str, square_m: float) -> Board:
 
 
 def corner_places(board: Board) -> Vector:
-    """(n, 3) metres: x to its right, y down its print, z into it; its top left is the origin."""
+    """(n, 3) metres: x to the right, y down the print, z into it; the origin is its top left."""
     across, down = np.meshgrid(np.arange(1, board.columns), np.arange(1, board.rows))
     places = np.column_stack([across.ravel(), down.ravel(), np.zeros(across.size)])
     return np.asarray(places * board.square_m, np.float64)
@@ -83,7 +84,7 @@ def charuco(board: Board) -> cv2.aruco.CharucoBoard:
 
 
 def black_cells(board: Board) -> list[tuple[float, float, float, float]]:
-    """What is black, as rectangles (left, top, width, height) in squares, from the top left."""
+    """The black areas as rectangles (left, top, width, height) in squares, from the top left."""
     cells = []
     for row in range(board.rows):
         for column in range(board.columns):

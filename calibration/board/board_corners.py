@@ -12,9 +12,9 @@ from calibration.board.corner_alignment import aligned
 from common.body.body import Vector
 
 WIDE_PX: Final = 2560
-"""Width that pictures are enlarged to, pixels: markers of ten pixels can be read then."""
+"""Width that pictures are enlarged to, pixels: markers of ten pixels become readable."""
 BARE_PX: Final = 640
-"""Width that pictures are reduced to for a chessboard, pixels: it has no markers, so that a full
+"""Width that pictures are reduced to for a chessboard, pixels: it has no markers, so a full
 search takes long where there is no board."""
 LARGEST: Final = 4
 ROUGHLY: Final = 4
@@ -26,14 +26,15 @@ Grey = NDArray[np.uint8]
 
 
 def corners_in(picture: Grey, board: Board) -> Vector | None:
-    """Where a picture shows the board's corners.
+    """The board's corners in a picture.
 
     Args:
         picture: (height, width) or (height, width, 3).
-        board: The one that may be there.
+        board: The board to look for.
 
     Returns:
-        (n, 2) pixels, the centre of the first at (0, 0); NaN of what is hidden. None where too few
+        (n, 2) pixels, the centre of the first pixel at (0, 0); NaN for a hidden corner. None where
+        too few
         are seen.
     """
     grey = cv2.cvtColor(picture, cv2.COLOR_BGR2GRAY) if picture.ndim == 3 else picture
@@ -65,8 +66,8 @@ def _charuco(picture: Grey, board: Board) -> Vector:
 
 @lru_cache(maxsize=4)
 def _detector(board: Board) -> cv2.aruco.CharucoDetector:
-    # Markers that were not read are asked for where the others say that they are: of boards that
-    # look small or slanted three to four times as many corners are found.
+    # Markers that were not read are searched where the others predict them: on boards that look
+    # small or slanted this finds three to four times as many corners.
     more = cv2.aruco.CharucoParameters()
     more.tryRefineMarkers = True
     return cv2.aruco.CharucoDetector(charuco(board), more)
@@ -88,7 +89,7 @@ def _of_chessboard(picture: Grey, board: Board) -> Vector:
 
 
 def _begins_white(picture: Grey, px: Vector) -> bool:
-    """Whether the squares that should be black are the lighter ones."""
+    """Whether the squares that should be black are lighter than the others."""
     centres = (px[:-1, :-1] + px[1:, 1:] + px[:-1, 1:] + px[1:, :-1]) / 4
     columns, rows = np.round(centres).astype(int).reshape(-1, 2).T
     height, width = picture.shape

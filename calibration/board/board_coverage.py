@@ -1,4 +1,4 @@
-"""Which part of each picture the board was seen in: as a share, and drawn."""
+"""The part of each picture in which the board was seen: as a share, and drawn."""
 
 from collections.abc import Sequence
 from typing import Final
@@ -10,13 +10,13 @@ from numpy.typing import NDArray
 from common.body.body import Vector
 
 CELLS: Final = 48
-"""Across a picture."""
+"""Number of cells across a picture."""
 WIDE_PX: Final = 480
-"""Of each picture, where it is drawn."""
+"""Width of each drawn picture, pixels."""
 TINT: Final = (80, 200, 60)
-"""Blue, green, red of what was covered."""
+"""Tint of covered cells: blue, green, red."""
 OFTEN: Final = 4
-"""Rests after which the tint is full."""
+"""Number of rests that give the full tint."""
 
 
 def covered(px: Vector, size_px: tuple[int, int]) -> NDArray[np.int64]:
@@ -24,7 +24,7 @@ def covered(px: Vector, size_px: tuple[int, int]) -> NDArray[np.int64]:
 
     Args:
         px: (m, n, 2) the corners at each rest, NaN where hidden.
-        size_px: Of the picture.
+        size_px: Width and height of the picture.
 
     Returns:
         (rows, CELLS)
@@ -42,7 +42,7 @@ def covered(px: Vector, size_px: tuple[int, int]) -> NDArray[np.int64]:
 def coverage_picture(
     pictures: Sequence[NDArray[np.uint8]], cells: Sequence[NDArray[np.int64]]
 ) -> NDArray[np.uint8]:
-    """Each camera's picture, dark, with what the board covered in green, one beside the other."""
+    """The cameras' pictures side by side, darkened, with the covered cells in green."""
     return np.concatenate(
         [_tinted(picture, some) for picture, some in zip(pictures, cells, strict=True)], axis=1
     )

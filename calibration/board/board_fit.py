@@ -1,4 +1,4 @@
-"""All cameras and all places of the board at once, so that its corners are where they were seen."""
+"""Bundle adjustment of all cameras and all places of the board."""
 
 from collections.abc import Sequence
 from typing import Final, NamedTuple
@@ -12,7 +12,7 @@ from common.body.body import Vector
 SIGMA_PX: Final = 0.05
 """Prior standard deviation of a resting corner in the picture, pixels."""
 FINEST_PX: Final = 0.01
-"""Least standard deviation of a corner that any sight is given, pixels."""
+"""Smallest standard deviation of a sight's corners, pixels."""
 BELIEVED: Final = 3.0
 """Weight of SIGMA_PX in a sight's standard deviation, as a number of corners."""
 SOFT: Final = 3.0
@@ -20,29 +20,29 @@ SOFT: Final = 3.0
 OFF_MIDDLE: Final = 0.03
 """Standard deviation of a lens's centre about the middle of the picture, widths."""
 SQUARE: Final = 0.002
-"""How far pixels are from being square."""
+"""Standard deviation of fy / fx about 1."""
 BENT: Final = 0.5
-"""k1 and k2 of lenses."""
+"""Standard deviations of k1 and k2."""
 LENS: Final = 6
-"""fx, fy, cx, cy, k1, k2."""
+"""Numbers of a lens: fx, fy, cx, cy, k1, k2."""
 PLACE: Final = 6
-"""A turn and a shift."""
+"""Numbers of a place: a turn and a shift."""
 
 
 class Sight(NamedTuple):
-    """What one camera shows of the board at one rest."""
+    """The corners that one camera shows at one rest of the board."""
 
     camera: int
     rest: int
     places: Vector
-    """(n, 3) of the corners that it shows, metres, in the board's axes."""
+    """(n, 3) places of these corners on the board, metres, in its axes."""
     px: Vector
-    """(n, 2)"""
+    """(n, 2) pixels."""
     sigma_px: float = SIGMA_PX
 
 
 class Start(NamedTuple):
-    """Where a fit begins; as in `Fit`."""
+    """Start of a fit; fields as in `Fit`."""
 
     lenses: Vector
     cameras: tuple[Place, ...]
@@ -50,22 +50,22 @@ class Start(NamedTuple):
 
 
 class Fit(NamedTuple):
-    """Cameras and boards that suit all sights."""
+    """The fitted cameras and boards."""
 
     lenses: Vector
     """(cameras, 6)"""
     cameras: tuple[Place, ...]
-    """The first camera's axes in each one's own."""
+    """From the first camera's axes to each camera's."""
     boards: tuple[Place, ...]
-    """The board's axes in the first camera's, at each rest."""
+    """From the board's axes to the first camera's, at each rest."""
     focal_error_px: Vector
-    """(cameras,) one sigma."""
+    """(cameras,) standard deviation of the focal length."""
     misses_px: tuple[Vector, ...]
-    """(n, 2) of each sight."""
+    """(n, 2) residuals of each sight, pixels."""
 
 
 class _Layout(NamedTuple):
-    """Where a vector of unknowns has what."""
+    """Layout of the vector of unknowns."""
 
     cameras: int
     rests: int
@@ -87,7 +87,7 @@ class _Layout(NamedTuple):
 
 
 def start_of(lenses: Sequence[Lens], cameras: Sequence[Place], rests: int) -> Start:
-    """Lenses as numbers, and each place of the board by the first camera that shows it."""
+    """The vector: lenses, then each board's place relative to the first camera that shows it."""
     numbers = [
         [lens.K[0, 0], lens.K[1, 1], lens.K[0, 2], lens.K[1, 2], lens.k1, 0.0] for lens in lenses
     ]
@@ -101,8 +101,9 @@ def start_of(lenses: Sequence[Lens], cameras: Sequence[Place], rests: int) -> St
 def fitted_to(sights: Sequence[Sight], start: Start, size_px: tuple[int, int]) -> Fit:
     """The likeliest cameras and boards, from a start.
 
-    Least squares of what corners miss, softened; besides, lenses look about at the middle, pixels
-    are about square, and no lens bends wildly: what few poses leave open stays believable.
+    Robust least squares of the reprojection errors, with priors: lenses have their centre near the
+    middle, pixels are nearly square, distortion is small. So what few poses leave undetermined
+    stays plausible.
     """
     from scipy.optimize import least_squares
 
@@ -135,7 +136,8 @@ def fitted_to(sights: Sequence[Sight], start: Start, size_px: tuple[int, int]) -
 
 
 def weighed(sight: Sight, miss_px: Vector) -> Sight:
-    """A sight with the sigma that its corners show: near boards are seen better than far ones."""
+    """A sight with the standard deviation of its residuals: near boards are seen better than far
+    ones."""
     told = float(np.sum(miss_px**2)) / 2 + BELIEVED * SIGMA_PX**2
     return sight._replace(sigma_px=max(FINEST_PX, (told / (len(miss_px) + BELIEVED)) ** 0.5))
 
@@ -145,7 +147,7 @@ def _place(numbers: Vector) -> Place:
 
 
 def _prior(layout: _Layout, lenses: Vector, size_px: tuple[int, int]) -> tuple[Vector, Vector]:
-    """What is believed of any lens: rows (5 a camera, unknowns), and what they should give."""
+    """The priors on lenses: rows (5 a camera, unknowns), and their targets."""
     rows, wanted = [], []
     for camera, lens in enumerate(lenses):
         begin, focal_px = LENS * camera, float(lens[0])
@@ -168,7 +170,7 @@ def _prior(layout: _Layout, lenses: Vector, size_px: tuple[int, int]) -> tuple[V
 def _shown(
     layout: _Layout, unknown: Vector, sight: Sight
 ) -> tuple[Vector, Vector, Sequence[Vector]]:
-    """Where a sight's corners would be, (n, 2), the slopes of that, and those of the places."""
+    """Predicted corners of a sight, (n, 2), their derivatives, and those of the places."""
     fx, fy, cx, cy, k1, k2 = unknown[layout.lens(sight.camera)]
     board = unknown[layout.board(sight.rest)]
     camera = unknown[layout.camera(sight.camera)] if sight.camera else np.zeros(PLACE)

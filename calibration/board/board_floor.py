@@ -1,4 +1,4 @@
-"""The floor, from a board laid down on it, and the world that begins there."""
+"""The floor from a board that lies on it, and the world's origin there."""
 
 from collections.abc import Sequence
 from typing import Final, NamedTuple
@@ -11,17 +11,17 @@ from common.body.body import Vector
 from common.rig.rig_file import CalibrationError
 
 UPRIGHT: Final = 0.75
-"""How much of a lying board's up is up for the cameras, at least, or to a side of all that are
-rolled alike."""
+"""Smallest component of a lying board's normal along the cameras' up axis, or along one side
+axis where all cameras are rolled alike."""
 BELOW_M: Final = 0.05
-"""No board was ever this far below the floor."""
+"""Largest depth of a board below the floor, metres."""
 ABOVE_M: Final = 0.1
-"""Cameras stand at least this far above it."""
+"""Smallest height of a camera above the floor, metres."""
 FLAT_M: Final = 0.02
-"""Boards whose corners are all as near to the floor of the last one lie on it too."""
+"""Boards whose corners are all this near to the last one's floor, metres, lie on it too."""
 
 STEEP: Final = 0.1
-"""Sine of the angle to the vertical at which a camera looks straight down."""
+"""Sine of the angle to the vertical below which a camera looks straight down."""
 
 
 class Floor(NamedTuple):
@@ -30,24 +30,24 @@ class Floor(NamedTuple):
     up: Vector
     """(3,)"""
     origin: Vector
-    """(3,) metres, on it: the middle of the board that lay there last."""
+    """(3,) metres, on the floor: the middle of the board at the last rest on it."""
     rests: tuple[int, ...]
-    """In which the board lay on it."""
+    """The rests at which the board lay on it."""
 
 
 def floor_of(
     boards: Sequence[Place], cameras: Sequence[Place], places: Vector, named: int | None
 ) -> Floor:
-    """The floor by the boards that lie on it.
+    """The floor from the boards that lie on it.
 
     Args:
-        boards: Where the board was at each rest, in the first camera's axes.
-        cameras: The first camera's axes in each one's own.
-        places: (n, 3) of its corners.
-        named: The rest in which it lay on the floor; None: the last below which no board ever was.
+        boards: The board's place at each rest, in the first camera's axes.
+        cameras: From the first camera's axes to each camera's.
+        places: (n, 3) the board's corners, metres.
+        named: The rest at which it lay on the floor; None: the last one with no board below it.
 
     Raises:
-        CalibrationError: When it never lay there.
+        CalibrationError: When the board never lay on the floor.
     """
     corners = np.stack([_moved(board, places) for board in boards])
     if named is None:
@@ -68,7 +68,7 @@ def floor_of(
 def world_cameras(cameras: Sequence[Place], floor: Floor) -> list[tuple[Vector, Vector]]:
     """R and t of each camera in a world with x to the right in camera 1, y up, z towards it.
 
-    Where it looks straight down z is where its picture has down.
+    Where camera 1 looks straight down, z points down in its picture.
     """
     towards = np.array([0.0, 0.0, -1.0])
     if np.linalg.norm(np.cross(towards, floor.up)) < STEEP:
@@ -84,7 +84,8 @@ def world_cameras(cameras: Sequence[Place], floor: Floor) -> list[tuple[Vector, 
 
 
 def _lies(rest: int, boards: Sequence[Place], corners: Vector, cameras: Sequence[Place]) -> bool:
-    """Whether a board may lie on the floor: it faces up, all cameras are above it, no board below.
+    """Whether a board can lie on the floor: it faces up, all cameras are above it, no board is
+    below.
 
     A board that is held at a slant has others below its plane.
     """
@@ -107,7 +108,8 @@ def _moved(board: Place, places: Vector) -> Vector:
 
 
 def _plane(points: Vector, near: Vector) -> tuple[Vector, float]:
-    """The normal that is near to a direction, and the height along it, of points (n, 3)."""
+    """The plane's normal on the side of a given direction, and the heights along it of points
+    (n, 3)."""
     middle = points.mean(axis=0)
     normal: Vector = np.linalg.svd(points - middle, full_matrices=False)[2][2]
     normal = normal * np.sign(normal @ near)

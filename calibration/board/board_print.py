@@ -1,4 +1,4 @@
-"""The board to print, in true size, as a PDF."""
+"""The board as a PDF, to print in true size."""
 
 from pathlib import Path
 from typing import Final
@@ -11,7 +11,7 @@ MM_AN_INCH: Final = 25.4
 
 
 def print_board(path: Path, paper: Paper) -> None:
-    """Write the board of a sheet as vectors: all of one black path, so that no seams are drawn.
+    """Write the board of a sheet as vectors: one black path, so that no seams appear.
 
     Raises:
         CalibrationError: When the file cannot be written.

@@ -1,4 +1,4 @@
-"""How good a calibration by a board is."""
+"""Quality of a calibration with a board."""
 
 from collections.abc import Sequence
 
@@ -12,39 +12,39 @@ from calibration.board.still_board import Moments, seen_by
 
 
 class CameraQuality(msgspec.Struct, frozen=True):
-    """What the board shows of one camera."""
+    """One camera's quality."""
 
     name: str
     focal_px: float
     focal_error_px: float
-    """One sigma."""
+    """Standard deviation of the focal length."""
     k1: float
     k2: float
     reprojection_px: float
-    """Root mean square of what corners miss."""
+    """Root mean square of the reprojection errors."""
     rests: int
-    """In which it showed the board."""
+    """Number of rests at which it showed the board."""
     coverage: float
     """Share of its picture in which the board was seen."""
 
 
 class Quality(msgspec.Struct, frozen=True):
-    """How good a calibration by a board is."""
+    """Quality of a calibration with a board."""
 
     cameras: tuple[CameraQuality, ...]
     reprojection_px: float
     shared_rests: int
-    """In which two cameras or more showed the board."""
+    """Number of rests at which two cameras or more showed the board."""
     floor_s: float
-    """When the board lay on the floor, by the first video."""
+    """Times at which the board lay on the floor, by the first video."""
     floor_rests: int
-    """How often it lay there."""
+    """Number of those rests."""
 
 
 def quality_of(
     fit: Fit, sights: list[Sight], moments: Moments, floor: Floor, size_px: tuple[int, int]
 ) -> Quality:
-    """What a fit says of its cameras."""
+    """Quality of each camera of a fit."""
     seen = seen_by(moments)
     cameras = []
     for n, lens in enumerate(fit.lenses):
@@ -72,7 +72,7 @@ def quality_of(
 
 
 def miss_px_of(fit: Fit, sights: Sequence[Sight], camera: int) -> float:
-    """Root mean square of what the corners of one camera miss."""
+    """Root mean square of one camera's reprojection errors."""
     off = [
         np.sum(miss**2, axis=1)
         for sight, miss in zip(sights, fit.misses_px, strict=True)

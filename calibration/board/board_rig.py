@@ -1,4 +1,4 @@
-"""A rig from videos of a board, and how good it is."""
+"""A rig from videos of a board, and its quality."""
 
 from collections.abc import Sequence
 from typing import Final, NamedTuple
@@ -26,32 +26,31 @@ from common.rig.camera import Rig
 from common.rig.rig_file import CalibrationError
 
 LEAST_RESTS: Final = 8
-"""Of one camera."""
+"""Fewest rests of one camera."""
 LEAST_SHARED: Final = 4
-"""Of two."""
+"""Fewest rests that two cameras share."""
 MOST_RESTS: Final = 80
-"""What more tell is little."""
+"""Most rests that are used: more add little."""
 LAST_RESTS: Final = 12
-"""Number of last rests that are kept whatever they show: the board is laid on the floor at the
-end."""
+"""Number of last rests that are always kept: the board is laid on the floor at the end."""
 ASTRAY: Final = 3.0
-"""Error of a sight, in medians of all, above which it is dropped if it is above ASTRAY_PX too."""
+"""Error of a sight, in medians of all, above which it is dropped if it exceeds ASTRAY_PX too."""
 ASTRAY_PX: Final = 0.5
 POOR_PX: Final = 1.5
-"""Mean error of the corners, pixels, above which the board is held not to be the one that was
+"""Mean error of the corners, pixels, above which the board is probably not the one that was
 named."""
 APART: Final = 0.02
-"""Error of the board's corners, in widths of the picture, above which two cameras are held not to
-have looked at the same moments."""
+"""Error of the board's corners, in picture widths, above which two cameras probably did not look
+at the same moments."""
 
 
 class BoardCalibration(NamedTuple):
-    """A rig from videos of a board, and how good it is."""
+    """A rig from videos of a board, and its quality."""
 
     rig: Rig
     quality: Quality
     moments: Moments
-    """Instants of the videos that the rig was computed from."""
+    """Times of the rests that the rig was computed from."""
 
 
 def calibrated_by_board(
@@ -60,12 +59,13 @@ def calibrated_by_board(
     """The rig of the cameras that recorded a board.
 
     Args:
-        films: One a camera, all of one size.
-        board: The one that they show.
-        floor_s: When the board lies on the floor, by the first video; None: found.
+        films: One per camera, all of one picture size.
+        board: The board in the videos.
+        floor_s: Time at which the board lies on the floor, by the first video; None: found
+            automatically.
 
     Raises:
-        CalibrationError: With the video, what it lacks, and what to do.
+        CalibrationError: It names the video, what it lacks, and the cure.
     """
     places, size_px = corner_places(board), films[0].size_px
     rests = [rests_of(film) for film in films]
@@ -87,7 +87,7 @@ def calibrated_by_board(
 def _related(
     films: Sequence[Film], lenses: Sequence[Lens], moments: Moments, places: Vector
 ) -> list[Place]:
-    """The first camera's axes in those of each."""
+    """From the first camera's axes to each camera's."""
     shared, width_px = seen_by(moments), films[0].size_px[0]
     cameras = [Place(np.zeros(3), np.zeros(3))]
     for n, film in enumerate(films[1:], start=1):
@@ -126,7 +126,7 @@ def _refuse_poor(film: Film, miss_px: float) -> None:
 
 
 def _late(moments: Moments, floor_s: float | None) -> Chosen:
-    """Whether the board may lie on the floor: at that time, or among the last."""
+    """Whether the board may lie on the floor: at the given time, or among the last rests."""
     at = np.arange(len(moments.px)) >= len(moments.px) - LAST_RESTS
     if floor_s is not None:
         at |= (moments.begin_s <= floor_s) & (floor_s <= moments.end_s)
@@ -136,7 +136,7 @@ def _late(moments: Moments, floor_s: float | None) -> Chosen:
 def _fit(
     moments: Moments, places: Vector, start: Start, size_px: tuple[int, int]
 ) -> tuple[Fit, list[Sight], Moments]:
-    """Twice: the second time without sights that went astray, and with what each is worth."""
+    """Fit twice: the second time without outlying sights, and with each sight's own deviation."""
     sights = _sights(moments, places)
     fit = fitted_to(sights, start, size_px)
     off_px = np.array([np.sqrt(np.mean(np.sum(miss**2, axis=1))) for miss in fit.misses_px])

@@ -1,4 +1,5 @@
-"""Corners to a few hundredths of a pixel: the picture held against the print round each of them."""
+"""Corners to a few hundredths of a pixel: the picture is aligned with the print around each
+corner."""
 
 from functools import lru_cache
 from typing import Final
@@ -11,26 +12,26 @@ from calibration.board.board import Board, black_cells
 from common.body.body import Vector
 
 CELL_PX: Final = 32
-"""Of a square's side, where the picture is turned to face the board."""
+"""Pixels per square's side, where the picture is warped to face the board."""
 REACH: Final = 0.5
-"""How far round a corner is looked, in squares."""
+"""Window around a corner, squares."""
 BLUR_PX: Final = 0.7
-"""Of a picture's own pixels: the lens and the pixel itself."""
+"""Blur of a picture, its own pixels: the lens and the pixel itself."""
 LIKE: Final = 0.8
-"""Correlation of picture and print, below which a corner is taken for hidden."""
+"""Correlation of picture and print below which a corner counts as hidden."""
 ROUNDS: Final = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 30, 1e-4)
 
 
 def aligned(grey: NDArray[np.uint8], board: Board, px: Vector) -> Vector:
-    """Corners, also those that were missed, where the print fits the picture best.
+    """Corners, including missed ones, at the places where the print fits the picture best.
 
-    What looks for corners is drawn towards the markers beside them: on synthetic videos by 0.05 to
-    0.5 px at squares of 20 px. The print has the markers too: 0.005 to 0.02 px are left.
+    The corner detector is biased towards the markers beside a corner: on synthetic videos by 0.05
+    to 0.5 px at squares of 20 px. The print contains the markers too: 0.005 to 0.02 px remain.
 
     Args:
         grey: (height, width)
-        board: That is seen.
-        px: (n, 2) its corners roughly, NaN where not found; six at least.
+        board: The board that is seen.
+        px: (n, 2) its corners roughly, NaN where not found; at least six found.
 
     Returns:
         (n, 2), NaN where the picture does not show the print.
@@ -56,7 +57,7 @@ def aligned(grey: NDArray[np.uint8], board: Board, px: Vector) -> Vector:
 
 
 def _inside(onto: Vector, cells: Vector, shape: tuple[int, ...]) -> NDArray[np.bool_]:
-    """(n,) whether a picture has all that is looked at round a corner."""
+    """(n,) whether a picture contains the whole window of a corner."""
     rim = np.array([(x, y) for x in (-REACH, REACH) for y in (-REACH, REACH)])
     around = (cells[:, None] + rim).reshape(-1, 1, 2)
     px = cv2.perspectiveTransform(around, onto).reshape(len(cells), -1)
@@ -65,7 +66,7 @@ def _inside(onto: Vector, cells: Vector, shape: tuple[int, ...]) -> NDArray[np.b
 
 
 def _spans_px(onto: Vector, cells: Vector) -> Vector:
-    """(n, 2) how many pixels a square takes along its sides, at each corner."""
+    """(n, 2) pixels per square along its sides, at each corner."""
     here, right, below = (
         cv2.perspectiveTransform((cells + step).reshape(-1, 1, 2), onto)[:, 0]
         for step in ([0.0, 0.0], [0.1, 0.0], [0.0, 0.1])
@@ -75,7 +76,7 @@ def _spans_px(onto: Vector, cells: Vector) -> Vector:
 
 
 def _aligned(turned: NDArray[np.uint8], board: Board, cell: Vector, span: Vector) -> Vector | None:
-    """Where a corner is, in squares; None where the picture does not look like the print."""
+    """A corner's displacement, in squares; None where the picture does not resemble the print."""
     reach, (x, y) = round(REACH * CELL_PX), np.round(cell * CELL_PX).astype(int).tolist()
     part = (slice(y - reach, y + reach), slice(x - reach, x + reach))
     blur = np.maximum(BLUR_PX * CELL_PX / np.maximum(span, 1.0), 0.5)
@@ -85,7 +86,7 @@ def _aligned(turned: NDArray[np.uint8], board: Board, cell: Vector, span: Vector
         like, shift = cv2.findTransformECC(
             printed, turned[part].astype(np.float32), shift, cv2.MOTION_TRANSLATION, ROUNDS
         )
-    except cv2.error:  # it does not converge on what shows no corner
+    except cv2.error:  # it does not converge where there is no corner
         return None
     off = shift[:, 2].astype(np.float64)
     if like < LIKE or np.abs(off).max() > reach / 2:
@@ -95,7 +96,7 @@ def _aligned(turned: NDArray[np.uint8], board: Board, cell: Vector, span: Vector
 
 @lru_cache(maxsize=2)
 def _print(board: Board) -> NDArray[np.float32]:
-    """The print, CELL_PX a square, with the pixels that `turned` has: corners between pixels."""
+    """The print, CELL_PX a square, sampled like `turned`: corners lie between pixels."""
     picture = np.full((board.rows * CELL_PX * 4, board.columns * CELL_PX * 4), 255, np.float32)
     for left, top, width, height in black_cells(board):
         x, y, right, bottom = (

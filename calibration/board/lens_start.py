@@ -1,4 +1,4 @@
-"""A first guess of lenses and of where cameras stand to each other, from a board's rests."""
+"""Initial lenses and relative camera places, from a board's rests."""
 
 from collections.abc import Sequence
 from typing import Final, NamedTuple
@@ -12,7 +12,7 @@ from common.body.body import Vector
 Points = NDArray[np.float32]
 
 FOCALS: Final = (0.7, 1.0, 1.5)
-"""Focal lengths to start from, in widths of the picture: closed forms fail on small boards."""
+"""Focal lengths to start from, in picture widths: closed forms fail on small boards."""
 FLAGS: Final = (
     cv2.CALIB_USE_INTRINSIC_GUESS
     | cv2.CALIB_FIX_PRINCIPAL_POINT
@@ -24,32 +24,33 @@ FLAGS: Final = (
 
 
 class Place(NamedTuple):
-    """Where a board is to a camera, or a camera to another: x = R(turn) x + shift."""
+    """Pose of a board relative to a camera, or of a camera relative to another: x = R(turn) x +
+    shift."""
 
     turn: Vector
-    """(3,) Rodrigues."""
+    """(3,) Rodrigues vector."""
     shift: Vector
     """(3,) metres."""
 
 
 class Lens(NamedTuple):
-    """What is known of one camera by itself."""
+    """What one camera alone determines."""
 
     K: Vector
     k1: float
     miss_px: float
-    """Root mean square."""
+    """Root mean square of the reprojection errors, pixels."""
     boards: dict[int, Place]
-    """Where the board was, by the number of its rest."""
+    """The board's pose, by the number of its rest."""
 
 
 def lens_of(places: Vector, px: Vector, size_px: tuple[int, int]) -> Lens:
-    """One camera by itself: focal length, k1 and where the board was in each rest.
+    """One camera alone: focal length, k1 and the board's pose at each rest.
 
     Args:
         places: (n, 3) the board's corners, metres.
-        px: (m, n, 2) what the camera shows, NaN where hidden.
-        size_px: Of its picture.
+        px: (m, n, 2) the corners in the camera's picture, NaN where hidden.
+        size_px: Width and height of the picture.
     """
     rests = [row for row in range(len(px)) if np.isfinite(px[row, :, 0]).any()]
     seen = [np.isfinite(px[row, :, 0]) for row in rests]
@@ -79,28 +80,28 @@ def _calibrated(
 
 
 def chained(first: Place, then: Place) -> Place:
-    """The place after both."""
+    """The composition of both poses."""
     turn, shift = cv2.composeRT(first.turn, first.shift, then.turn, then.shift)[:2]
     return Place(np.ravel(turn), np.ravel(shift))
 
 
 def undone(place: Place) -> Place:
-    """The way back."""
+    """The inverse pose."""
     turn = cv2.Rodrigues(place.turn)[0]
     return Place(-place.turn, -turn.T @ place.shift)
 
 
 def between(first: Lens, other: Lens, places: Vector, px: Vector) -> tuple[Place, float]:
-    """Where another camera stands to the first: the rest of the board that suits the others best.
+    """Pose of another camera relative to the first: from the rest that agrees best with the others.
 
     Args:
         first: The first camera.
-        other: The other, of which `px` (m, n, 2) is.
+        other: The other camera, to which `px` (m, n, 2) belongs.
         places: (n, 3) the board's corners, metres.
-        px: What the other camera shows, NaN where hidden.
+        px: The corners in the other camera's picture, NaN where hidden.
 
     Returns:
-        The place of the first in the other's axes, and the median miss of it, pixels.
+        The pose of the first in the other's axes, and its median reprojection error, pixels.
     """
     shared = sorted(first.boards.keys() & other.boards.keys())
     guesses = [chained(undone(first.boards[row]), other.boards[row]) for row in shared]

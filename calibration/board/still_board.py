@@ -1,4 +1,4 @@
-"""When a board is held still, and what several cameras show of it then."""
+"""Rests of a board: when it is held still, and what several cameras show of it then."""
 
 from collections.abc import Sequence
 from typing import Final, NamedTuple
@@ -12,21 +12,21 @@ Chosen = NDArray[np.bool_]
 Numbers = NDArray[np.intp]
 
 MOVED: Final = 0.0025
-"""Of the picture's width: a board that moves less since it came to rest is held still."""
+"""Share of the picture's width: a board that moves less since the start of a rest is still."""
 SHORTEST_S: Final = 0.35
-"""A rest that is shorter may be the turn of a movement."""
+"""Shortest rest, seconds: a shorter one may be the turning point of a movement."""
 SHARED: Final = 0.5
-"""Of the shorter of two cameras' rests, so much must be at one time: a board that is held for two
-seconds is found in videos that began up to a second apart."""
+"""Share of the shorter of two cameras' rests that must overlap: a board held for two seconds is
+found in videos that began up to a second apart."""
 
 
 class Film(NamedTuple):
-    """What one video shows of a board."""
+    """The board's corners in one video."""
 
     name: str
     size_px: tuple[int, int]
     time_s: Vector
-    """(m,) of the frames that were looked at and show it."""
+    """(m,) times of the examined frames that show the board."""
     px: Vector
     """(m, n, 2) its corners, NaN where hidden."""
 
@@ -41,17 +41,17 @@ class Rest(NamedTuple):
 
 
 class Moments(NamedTuple):
-    """Rests of the board, as all cameras show them."""
+    """Rests of the board, in all cameras."""
 
     begin_s: Vector
-    """(m,)"""
+    """(m,) times."""
     end_s: Vector
     px: Vector
     """(m, cameras, n, 2), NaN where hidden."""
 
 
 def rests_of(film: Film) -> list[Rest]:
-    """All stretches in which the board is at rest, in their order."""
+    """All stretches in which the board is at rest, in order."""
     far_px = MOVED * film.size_px[0]
     groups: list[list[int]] = []
     for index in range(len(film.time_s)):
@@ -63,7 +63,7 @@ def rests_of(film: Film) -> list[Rest]:
 
 
 def _moved_px(film: Film, before: int, after: int) -> float:
-    """How far the corners that both frames show have moved; endlessly where these are few."""
+    """Displacement of the corners that both frames show; infinite where these are few."""
     steps = np.linalg.norm(film.px[after] - film.px[before], axis=-1)
     seen = np.isfinite(steps)
     return float(np.sqrt(np.mean(steps[seen] ** 2))) if np.count_nonzero(seen) >= 4 else np.inf
@@ -81,9 +81,9 @@ def _rest(film: Film, group: Sequence[int]) -> Rest | None:
 
 
 def moments_of(rests: Sequence[Sequence[Rest]]) -> Moments:
-    """The rests of several cameras, those that are at one time together.
+    """The rests of several cameras, matched by time.
 
-    A rest of another camera joins that of camera 1 with which it shares most time.
+    A rest of another camera is matched to the rest of camera 1 with the longest overlap.
     """
     kept: list[tuple[Rest, dict[int, Vector]]] = [(rest, {0: rest.px}) for rest in rests[0]]
     alone: list[tuple[Rest, dict[int, Vector]]] = []
@@ -106,19 +106,20 @@ def moments_of(rests: Sequence[Sequence[Rest]]) -> Moments:
 
 
 def _shared_s(one: Rest, other: Rest) -> float:
-    """The time that two rests share; 0 where that is too little of either."""
+    """Overlap of two rests; 0 where it is too short for either."""
     shared_s = min(one.end_s, other.end_s) - max(one.begin_s, other.begin_s)
     shorter_s = min(one.end_s - one.begin_s, other.end_s - other.begin_s)
     return shared_s if shared_s >= SHARED * shorter_s else 0.0
 
 
 def spread_moments(moments: Moments, most: int, needed: Chosen) -> Moments:
-    """At most so many of them, as different as can be; half of them shown by several cameras.
+    """At most this many of the rests, as different as possible; half of them shown by several
+    cameras.
 
     Args:
-        moments: All.
-        most: To keep.
-        needed: (m,) True of those that are kept besides.
+        moments: All rests.
+        most: Number of rests to keep.
+        needed: (m,) True for rests that are kept in addition.
     """
     seen = seen_by(moments)
     shared = seen.sum(axis=1) > 1
@@ -135,12 +136,13 @@ def seen_by(moments: Moments) -> Chosen:
 
 
 def only(moments: Moments, chosen: Numbers) -> Moments:
-    """Some of them, by their numbers."""
+    """Some of the rests, by index."""
     return Moments(moments.begin_s[chosen], moments.end_s[chosen], moments.px[chosen])
 
 
 def _look(px: Vector) -> Vector:
-    """How cameras show a board: of each the mean place and its spread, 0 where hidden."""
+    """Appearance of each rest: for each camera the corners' mean place and spread, 0 where
+    hidden."""
     looks = []
     for places in px:
         seen = places[np.isfinite(places[:, 0])]
@@ -151,7 +153,7 @@ def _look(px: Vector) -> Vector:
 
 
 def _farthest(looks: Vector, names: Numbers, most: int) -> list[int]:
-    """Names of those that are farthest from each other, one after the other."""
+    """Indices of rests far from each other, chosen one after the other."""
     if len(names) <= most:
         return [int(name) for name in names]
     chosen = [0]

@@ -1,1 +1,1 @@
-"""Calibrations of other programs, read and written with their conventions."""
+"""Calibrations of other programs, read and written in their conventions."""

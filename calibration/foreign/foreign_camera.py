@@ -1,4 +1,4 @@
-"""Cameras as OpenCV has them, and as we do: pixels' centres, and which way is up."""
+"""Conversion between other programs' cameras and ours: pixel centres, and the up axis."""
 
 from collections.abc import Sequence
 from typing import Final, Literal, NamedTuple
@@ -12,19 +12,19 @@ from common.rig.rig_file import CalibrationError, check_rig
 from common.rig.upright_camera import quarters_of
 
 CENTRE: Final = 0.5
-"""OpenCV has the centre of the first pixel at 0, we at this."""
+"""Our coordinate of the first pixel's centre; OpenCV's is 0."""
 FORMS: Final = "TOML of Pose2Sim, Caliscope or anipose, Qualisys' .qca.txt, OpenCV's .yml and .xml"
-"""What is read."""
+"""Suffixes of readable files."""
 
 
 Up = Literal["x", "y", "z", "-x", "-y", "-z"]
 """An axis of another program's world."""
 LOOKS_UP: Final = 0.2
-"""Sine of the angle over the horizon at which no camera of a room looks up: rolled ones seem to."""
+"""Sine of the elevation above which no camera of a room looks: beyond it the camera is rolled."""
 STEEP: Final = 0.3
-"""Cosine of the angle down from the horizon at which a camera's picture hardly shows up at all."""
+"""Cosine of the depression at which a camera's picture hardly shows the up direction."""
 UNDER_M: Final = 0.5
-"""Cameras that seem to stand so far under the floor hang upside down over it."""
+"""Apparent depth below the floor, metres, at which cameras in truth hang upside down above it."""
 
 
 class ForeignCamera(NamedTuple):
@@ -37,20 +37,20 @@ class ForeignCamera(NamedTuple):
     t: Vector
     distortion: tuple[float, ...]
     quarters: int = 0
-    """By how many quarter turns clockwise its picture becomes upright, as far as it is known."""
+    """Clockwise quarter turns that make its picture upright, as far as known."""
 
 
 def our_rig(cameras: Sequence[ForeignCamera], where: str, up: Up | None = None) -> Rig:
-    """The cameras in our conventions: y up, whichever axis theirs has up.
+    """The cameras in our conventions: y up, whichever axis is up in theirs.
 
     Args:
-        cameras: In another world.
+        cameras: Cameras in another world.
         where: Named in errors.
-        up: Which axis of that is up; None: the one that upright pictures have up.
+        up: The up axis of that world; None: the one that upright pictures show as up.
 
     Raises:
-        CalibrationError: When they are none, or of pictures of several sizes, or no rig, or are
-            rolled so that their pictures do not show which way is up.
+        CalibrationError: When there are none, their pictures have several sizes, they form no rig,
+            or they are rolled so that their pictures do not show the up direction.
     """
     if not cameras:
         raise CalibrationError(f"{where} holds no camera in a form that is known: {FORMS}")
@@ -73,10 +73,10 @@ def our_rig(cameras: Sequence[ForeignCamera], where: str, up: Up | None = None) 
 
 
 def up_in_pictures(cameras: Sequence[ForeignCamera], where: str) -> Vector:
-    """The axis (3,) of the cameras' world that their pictures have up.
+    """The axis (3,) of the cameras' world that is up in their pictures.
 
     Raises:
-        CalibrationError: When they do not agree as the pictures of cameras do that are not rolled.
+        CalibrationError: When they disagree more than the pictures of unrolled cameras do.
     """
     up = axes_with_y_up(np.mean([_up_of(camera) for camera in cameras], axis=0))[1]
     heights_m = [float(-camera.R.T @ camera.t @ up) for camera in cameras]
@@ -92,15 +92,15 @@ def up_in_pictures(cameras: Sequence[ForeignCamera], where: str) -> Vector:
 
 
 def _up_of(camera: ForeignCamera) -> Vector:
-    """Up in the camera's picture, (3,) in its world."""
+    """The up direction of the camera's picture, (3,) in its world."""
     right, down, _ = camera.R
     up: Vector = (-down, -right, down, right)[camera.quarters % 4]
     return up
 
 
 def _is_rolled(camera: ForeignCamera, up: Vector) -> bool:
-    """Whether a camera, were this up, would stand by more than 45 degrees aslant, or look up, or
-    straight down."""
+    """Whether, with this up direction, a camera would be tilted sideways by more than 45
+    degrees, look up, or look straight down."""
     upwards = float(_up_of(camera) @ up)
     aside = abs(float(_up_of(camera._replace(quarters=camera.quarters + 1)) @ up))
     return bool(upwards < max(aside, STEEP) or camera.R[2] @ up > LOOKS_UP)
@@ -113,7 +113,7 @@ def _named(up: Up) -> Vector:
 
 
 def axes_with_y_up(up: Vector) -> NDArray[np.float64]:
-    """Our axes in a world's own, rows (3, 3), by the axis of it that is nearest to up."""
+    """Our axes in another world, rows (3, 3), from its axis nearest to up."""
     axis = int(np.abs(up).argmax())
     y, z = np.zeros(3), np.zeros(3)
     y[axis], z[(axis + 1) % 3] = np.sign(up[axis]), 1.0

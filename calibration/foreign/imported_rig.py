@@ -1,4 +1,4 @@
-"""A calibration of another program as ours, by the kind of its file."""
+"""Import of another program's calibration, by the kind of its file."""
 
 from pathlib import Path
 
@@ -14,13 +14,13 @@ def imported_rig(path: Path, wanted: tuple[str, ...] = (), up: Up | None = None)
     """Two or more cameras of a file.
 
     Args:
-        path: In TOML, the text of Qualisys, or what OpenCV's FileStorage writes.
+        path: TOML, Qualisys text, or a file of OpenCV's FileStorage.
         wanted: Names of the cameras to keep, in this order; all when empty.
-        up: Which axis of its world is up; None: taken from its pictures.
+        up: The up axis of its world; None: taken from its pictures.
 
     Raises:
-        CalibrationError: When the file is of no kind that is known, cannot be read, has no such
-            camera, or its cameras form no rig.
+        CalibrationError: When the file is of no known kind, cannot be read, lacks a wanted camera,
+            or its cameras form no rig.
     """
     readers = {".toml": read_toml, ".txt": read_qualisys, ".xml": _read_xml}
     readers |= {".yml": read_opencv, ".yaml": read_opencv}
@@ -37,7 +37,7 @@ def imported_rig(path: Path, wanted: tuple[str, ...] = (), up: Up | None = None)
 
 
 def _read_xml(path: Path) -> list[ForeignCamera]:
-    """OpenCV's, or that of Qualisys."""
+    """An OpenCV file or a Qualisys file."""
     try:
         with path.open("rb") as file:
             ours = b"<opencv_storage" in file.read(1000)

@@ -1,4 +1,4 @@
-"""Calibrations that OpenCV's own samples write: YAML, XML or JSON of its FileStorage."""
+"""Calibrations of OpenCV's own samples: YAML, XML or JSON of its FileStorage."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -14,7 +14,7 @@ from common.rig.rig_file import CalibrationError
 
 LARGEST: Final = 10_000_000
 PLACES: Final = "extrinsics"
-"""How the file begins that stereo_calib writes beside intrinsics.yml."""
+"""First words of the file that stereo_calib writes beside intrinsics.yml."""
 MATRICES: Final = ("camera_matrix", "cameraMatrix", "K", "M")
 BENT: Final = ("distortion_coefficients", "distCoeffs", "D")
 SIZES: Final = (("image_width", "image_height"), ("width", "height"))
@@ -23,11 +23,11 @@ SIZES: Final = (("image_width", "image_height"), ("width", "height"))
 def read_opencv(path: Path) -> list[ForeignCamera]:
     """The cameras of a file: one (`camera_matrix`), or two (`M1`, `D1`, `M2`, `D2`, `R`, `T`).
 
-    What stereo_calib writes into a second file is read from `extrinsics.*` beside it. The world is
-    that of the first camera: no floor is given.
+    What stereo_calib writes into a second file is read from `extrinsics.*` beside it. The first
+    camera's axes are the world: no floor is given.
 
     Raises:
-        CalibrationError: When it cannot be read or misses a part.
+        CalibrationError: When it cannot be read or lacks a part.
     """
     content = _nodes(path)
     beside = path.with_name(PLACES + path.suffix)
@@ -70,7 +70,7 @@ def _camera(
 
 
 def _nodes(path: Path) -> Facts:
-    """The nodes at the top of a file, by their names."""
+    """The top nodes of a file, by name."""
     try:
         if path.stat().st_size > LARGEST:
             raise CalibrationError(f"{path} is too large for a calibration")
@@ -95,9 +95,9 @@ def _value(node: cv2.FileNode) -> Any:
 
 
 def _array(node: cv2.FileNode) -> Vector | None:
-    """A matrix (rows, cols); None where it is none.
+    """A matrix (rows, cols); None for any other node.
 
-    OpenCV's own reader writes beyond its memory where a matrix says another size than it has.
+    OpenCV's own reader writes beyond its memory where a matrix states a wrong size.
     """
     shape = [node.getNode(name) for name in ("rows", "cols")]
     data = _value(node.getNode("data"))

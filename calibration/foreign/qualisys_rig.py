@@ -1,4 +1,4 @@
-"""Calibrations of Qualisys, the text that its track manager exports (.qca.txt)."""
+"""Calibrations of Qualisys: the text that its track manager exports (.qca.txt)."""
 
 import xml.etree.ElementTree as ET
 from pathlib import Path
@@ -10,10 +10,10 @@ from calibration.foreign.foreign_camera import ForeignCamera
 from common.rig.rig_file import CalibrationError
 
 UNIT: Final = 64.0
-"""Parts of a pixel in which focal lengths and centres are given."""
+"""Units per pixel of the focal lengths and centres."""
 MM: Final = 1000.0
 TO_OPENCV: Final = np.diag([1.0, -1.0, -1.0])
-"""Turn of Qualisys's camera axes (y up, looking along -z) to OpenCV's."""
+"""Rotation from Qualisys's camera axes (y up, looking along -z) to OpenCV's."""
 LARGEST: Final = 10_000_000
 
 
@@ -21,7 +21,7 @@ def read_qualisys(path: Path) -> list[ForeignCamera]:
     """All cameras of a file, in its order.
 
     Raises:
-        CalibrationError: When it cannot be read or misses a part.
+        CalibrationError: When it cannot be read or lacks a part.
     """
     try:
         if path.stat().st_size > LARGEST:

@@ -1,4 +1,4 @@
-"""Calibrations in TOML, as anipose began it: Pose2Sim's, Caliscope's, anipose's own."""
+"""Calibrations in anipose's TOML form: anipose's own, Pose2Sim's, Caliscope's."""
 
 import json
 import tomllib
@@ -23,7 +23,8 @@ def read_toml(path: Path) -> list[ForeignCamera]:
     """All cameras of a file, in its order.
 
     Raises:
-        CalibrationError: When it cannot be read, or a camera of it is a fisheye or misses a part.
+        CalibrationError: When it cannot be read, or one of its cameras is a fisheye or lacks a
+        part.
     """
     try:
         content = tomllib.loads(path.read_text())
@@ -39,7 +40,7 @@ def read_toml(path: Path) -> list[ForeignCamera]:
 
 
 def _tables(content: Facts) -> Iterator[tuple[str, Facts]]:
-    """Tables of cameras, wherever they are."""
+    """The tables of cameras, at any depth."""
     for name, table in content.items():
         if isinstance(table, dict) and "matrix" in table:
             yield name, table
@@ -68,7 +69,8 @@ def _camera(section: str, table: Facts, path: Path) -> ForeignCamera:
 
 
 def _quarters(section: str, table: Facts, path: Path) -> int:
-    """By how many quarter turns clockwise Caliscope shows a picture; the rest is of it unturned."""
+    """Clockwise quarter turns with which Caliscope shows a picture; its other numbers are for
+    the picture before the turn."""
     count = table.get("rotation_count", 0)
     if not isinstance(count, int):
         raise CalibrationError(f"{path}: rotation_count of [{section}] is no whole number: {count}")
@@ -76,7 +78,7 @@ def _quarters(section: str, table: Facts, path: Path) -> int:
 
 
 def toml_text(rig: Rig, kind: TomlKind) -> str:
-    """A rig as one of these files, its world with z up."""
+    """A rig in this form, its world with z up."""
     parts = [_table(n, camera, kind) for n, camera in enumerate(with_z_up(rig))]
     if kind == "pose2sim":
         parts.append("[metadata]\nadjusted = false\nerror = 0.0\n")

@@ -1,1 +1,1 @@
-"""Is a given rig believable by what both views show, and what is likeliest wrong with it."""
+"""Whether a given rig is believable by what both views show, and its likeliest fault."""

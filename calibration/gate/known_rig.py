@@ -1,4 +1,4 @@
-"""A rig that is given, as the fit knows rigs: its vector, and tracks as ideal cameras show them."""
+"""A given rig in the form of the fit: its vector, and tracks as ideal cameras would show them."""
 
 import math
 
@@ -12,8 +12,8 @@ from common.rig.camera import Camera, Rig, centre
 
 
 def guess_of(rig: Rig) -> Vector:
-    """(RIG,) the vector of two cameras: their world turned and moved so that camera 1 stands over
-    its origin and has no yaw."""
+    """(RIG,) the vector of two cameras, in a world where camera 1 is above the origin and has no
+    yaw."""
     turns = [_turn_of(camera) for camera in rig.cameras]
     places = [centre(camera) for camera in rig.cameras]
     yaw = turns[0][0]
@@ -39,7 +39,8 @@ def _turn_of(camera: Camera) -> tuple[float, float, float]:
 
 
 def as_ideal(sighting: Sighting, rig: Rig) -> Sighting:
-    """What cameras without distortion, with one focal length and a middle in the middle, show."""
+    """The tracks as cameras without distortion, with one focal length and a central principal
+    point, would show them."""
     first, second = (
         _ideal_track(track, camera, sighting.size_px)
         for track, camera in zip((sighting.first, sighting.second), rig.cameras, strict=True)

@@ -1,4 +1,4 @@
-"""Cameras that are moved while a run goes on: where they stand now, and who has confirmed it."""
+"""Cameras moved during a run: their current pose, and which poses the person has confirmed."""
 
 from typing import Final, NamedTuple
 
@@ -16,25 +16,24 @@ AS_IT_WAS: Final = Shift(0.0, 0.0, 0.0)
 OTHERWISE_PX: Final = 1.0
 """Shift between two pictures of a camera, pixels, above which the camera was moved."""
 UNCONFIRMED_LEFT: Final = 0.5
-"""Share of the confidence that is left until the person has placed a camera that was moved."""
+"""Factor on the confidence until the person has placed a moved camera."""
 MOVED_LEFT: Final = 0.05
-"""Share of the confidence that is left while the rig in use is one that a camera has left."""
+"""Factor on the confidence while the rig in use is out of date for a camera."""
 
 
 class MovedCameras(NamedTuple):
-    """What the viewers report of how their cameras stand."""
+    """The viewers' reports of their cameras' shifts."""
 
     now: tuple[Shift, ...] = (AS_IT_WAS, AS_IT_WAS)
     """Shift of each camera's picture since the start of the run."""
     of_rig: tuple[Shift, ...] = (AS_IT_WAS, AS_IT_WAS)
     """Shift of each camera's picture when the rig in use was computed."""
     unconfirmed: tuple[ViewerNumber, ...] = ()
-    """Cameras whose place in it comes from their picture alone, as if they had turned on the
-    spot."""
+    """Cameras whose pose in it comes from their picture alone, as a pure rotation."""
 
     @property
     def moved(self) -> tuple[ViewerNumber, ...]:
-        """The cameras that the rig in use does not have where they stand."""
+        """The cameras whose pose in the rig in use is out of date."""
         shifts = zip(self.now, self.of_rig, strict=True)
         return tuple(
             n
@@ -44,30 +43,30 @@ class MovedCameras(NamedTuple):
 
     @property
     def doubtful(self) -> tuple[ViewerNumber, ...]:
-        """These, and those whose new place is not confirmed."""
+        """The outdated cameras, and those whose new pose is not confirmed."""
         return tuple(sorted({*self.moved, *self.unconfirmed}))
 
     @property
     def left(self) -> float:
-        """Share of the confidence that is left."""
+        """Factor on the confidence."""
         if self.moved:
             return MOVED_LEFT
         return UNCONFIRMED_LEFT if self.unconfirmed else 1.0
 
 
 def far_px(one: Shift, other: Shift) -> float:
-    """How far two shifts are apart, at the edge of a small picture."""
+    """Distance between two shifts, at the edge of a small picture."""
     roll_px = 80.0 * abs(np.radians(one.roll_deg - other.roll_deg))
     return float(max(abs(one.right_px - other.right_px), abs(one.down_px - other.down_px), roll_px))
 
 
 def init(cameras: int) -> MovedCameras:
-    """So many cameras stand as they stood."""
+    """The state for that many cameras, none moved."""
     return MovedCameras((AS_IT_WAS,) * cameras, (AS_IT_WAS,) * cameras)
 
 
 def step(state: MovedCameras, instant: Instant) -> MovedCameras:
-    """One instant more."""
+    """Process one instant."""
     now = tuple(
         before if view is None or view.fault else _shift(view)
         for view, before in zip(instant.views, state.now, strict=True)
@@ -80,7 +79,7 @@ def _shift(view: View) -> Shift:
 
 
 def told_by(state: MovedCameras, before: Rig | None, rig: Rig) -> MovedCameras:
-    """The same from a new rig on: what of it is the cameras' turn alone is not confirmed."""
+    """The state from a new rig on; cameras placed by rotation alone are unconfirmed."""
     unconfirmed: tuple[ViewerNumber, ...] = ()
     if before is not None:
         cameras = zip(before.cameras, rig.cameras, strict=True)
@@ -93,12 +92,12 @@ def told_by(state: MovedCameras, before: Rig | None, rig: Rig) -> MovedCameras:
 
 
 def stays(old: Camera, new: Camera) -> bool:
-    """Whether a camera is at the same place, however it is turned."""
+    """Whether a camera has the same position, however it is turned."""
     return bool(np.allclose(arrays_of(old).centre, arrays_of(new).centre, atol=1e-6))
 
 
 def turned_rig(rig: Rig, state: MovedCameras) -> Rig:
-    """The rig with its cameras turned where they stand, as their pictures show."""
+    """The rig with its cameras turned in place, as their pictures show."""
     cameras = tuple(
         turned(camera, turn_since(camera, before, now))
         if far_px(now, before) > OTHERWISE_PX
@@ -109,6 +108,6 @@ def turned_rig(rig: Rig, state: MovedCameras) -> Rig:
 
 
 def turn_since(camera: Camera, before: Shift, now: Shift) -> Vector:
-    """(3, 3) by which what a camera sees has turned from one shift of its picture to another."""
+    """(3, 3) rotation of the scene in a camera's axes between two shifts of its picture."""
     focal_px = arrays_of(camera).focal_px
     return np.asarray(turn_of(now, focal_px) @ turn_of(before, focal_px).T, float)

@@ -1,4 +1,4 @@
-"""Where cameras that were moved stand now, by the person whom both views still see."""
+"""New poses of moved cameras, from the person whom both views still see."""
 
 import math
 from typing import Final, NamedTuple
@@ -29,33 +29,35 @@ PLACES: Final = {
     "height_2": 0.035,
     "z_2": 0.05,
 }
-"""Standard deviation of a moved camera's place and turn about those that its picture alone gives,
-as if it had turned on the spot; radians and metres. With 0.15 m landmarks pulled cameras that had
-only turned: joints were 48 mm off instead of 22 (docs/measurements.md)."""
+"""Standard deviation of a moved camera's position and turn about the pure rotation that its
+picture shows; radians and metres. With 0.15 m the landmarks pulled cameras that had only turned:
+joints were 48 mm off instead of 22 (docs/measurements.md)."""
 TURNS: Final = ("pitch_1", "roll_1")
-"""What is free of the first where both were moved: its place and yaw are the world's."""
+"""Free numbers of camera 1 where both were moved: its position and yaw are the world's."""
 WALL: Final = 1.5
-"""How far the background is, in distances of the person: a step aside seems a turn before it."""
+"""Distance of the background, in distances of the person: before it, a step aside looks like a
+turn."""
 BACKDROP: Final = math.radians(0.3)
-"""How far the background is from where a camera must have it, radians."""
+"""Standard deviation of the background's direction, radians."""
 KNOWN_BODY: Final = 0.01
-"""How well the lengths are known that the person had before the move, as the landmarks see them."""
+"""Standard deviation of the lengths that the person had before the move, as the landmarks
+measure them."""
 
 
 class Stood(NamedTuple):
-    """What was seen before a camera was moved."""
+    """Observations from before a camera was moved."""
 
     rig: Rig
     sighting: Sighting
 
 
 class Person(NamedTuple):
-    """A person as the landmarks see them, who may err, but the same way after the move."""
+    """A person as the landmarks measure them; their errors stay the same after the move."""
 
     lengths: Vector
     """(8,) logarithms of LENGTHS, metres."""
     soles_m: float
-    """How high their soles seem to stand."""
+    """Measured height of their soles."""
 
 
 class Placed(NamedTuple):
@@ -63,9 +65,9 @@ class Placed(NamedTuple):
 
     rig: Rig
     gap_mm: float
-    """By how much sight lines of one joint miss each other, half of the time."""
+    """Median distance between the two sight lines of one joint."""
     turn_error_deg: float
-    """Of the moved camera's yaw, one sigma."""
+    """Standard deviation of the moved camera's yaw."""
 
 
 def placed(
@@ -75,14 +77,14 @@ def placed(
     late_s: float,
     stood: Stood | None = None,
 ) -> Placed | None:
-    """The rig with its moved cameras where the person has them; None where too little is seen.
+    """The rig with its moved cameras placed by the person; None where too little is seen.
 
     Args:
         rig: With the moved cameras turned as their pictures show.
-        sighting: What both saw since.
-        moved: One or both.
-        late_s: How late view 2 is.
-        stood: What was seen before: how long the person is, by the rig that was right then.
+        sighting: Both views since the move.
+        moved: One camera or both.
+        late_s: Delay of view 2.
+        stood: Observations from before the move: they give the person's lengths by the valid rig.
     """
     if moved == (1,):
         other = None if stood is None else Stood(exchanged_rig(stood.rig), _other(stood.sighting))
@@ -117,7 +119,7 @@ def _other(sighting: Sighting) -> Sighting:
 
 
 def _person(stood: Stood, late_s: float) -> Person | None:
-    """The person by the rig before, as the landmarks see them."""
+    """The person as the landmarks measure them by the rig before."""
     case = case_of(stood.rig, stood.sighting, Clock(late_s))
     if case is None:
         return None
@@ -131,7 +133,8 @@ def _person(stood: Stood, late_s: float) -> Person | None:
 
 
 def _of_person(person: Person, start: Vector, known: Known) -> tuple[Vector, Known]:
-    """What is begun with and believed of a known person: all stands higher by what they sink."""
+    """Start and prior for a known person: the cameras are raised by the height error of the
+    soles."""
     start, mean, sigma = start.copy(), known.mean.copy(), known.sigma.copy()
     for name in ("height_1", "height_2"):
         start[PLACE[name]] -= person.soles_m
@@ -163,7 +166,7 @@ def _fitted(start: Vector, evidence: Evidence, free: NDArray[np.bool_]) -> Fit:
 
 
 def _backdrop(before: Pinhole, camera: Pinhole, wall_m: float) -> Vector:
-    """(3,) by how much a wall ahead leaves its place in the picture, in sigmas."""
+    """(3,) displacement of a wall ahead from its place in the picture, in sigmas."""
     turn = camera.R @ before.R.T
     aside = before.R @ (camera.centre_m - before.centre_m)
     across = turn @ (np.array([0.0, 0.0, wall_m]) - aside)
@@ -172,7 +175,7 @@ def _backdrop(before: Pinhole, camera: Pinhole, wall_m: float) -> Vector:
 
 
 def _near(known: Known, start: Vector) -> Known:
-    """What is believed: moved cameras stand near where their pictures have them."""
+    """The prior: moved cameras stand near the pose that their pictures show."""
     mean, sigma = known.mean.copy(), known.sigma.copy()
     mean[LATE] = start[LATE]
     for name, spread in PLACES.items():
@@ -183,7 +186,7 @@ def _near(known: Known, start: Vector) -> Known:
 
 
 def _in_world(rig: Rig, start: Vector, guess: Vector) -> Rig:
-    """The cameras of a guess in the world in which a rig has those of the guess before."""
+    """The cameras of a guess, in the world in which a rig holds those of the guess before."""
     old, first = pinholes(start)[0], arrays_of(rig.cameras[0])
     turn = old.R.T @ first.R
     shift_m = old.centre_m - turn @ first.centre

@@ -1,4 +1,4 @@
-"""How well both views agree by a rig, instant by instant, and how far its joints are believed."""
+"""Agreement of both views under a rig, instant by instant, and the confidence that it leaves."""
 
 import math
 from typing import Final, NamedTuple
@@ -21,34 +21,34 @@ FEWEST: Final = 8
 """Fewest samples that are judged."""
 FEWEST_FACINGS: Final = 5
 SURE: Final = 0.6
-"""Landmarks of a view that are less sure on average do not count in an instant."""
+"""Mean confidence of a view's landmarks below which an instant does not count."""
 SURE_FACING: Final = 0.85
 USUAL_M: Final = 1.75
-"""Stature of a person whose ankles are this high: people differ by a centimetre there."""
+"""Stature of a person with this ankle height, statures: people differ by a centimetre."""
 NARROW: Final = 0.05
-"""Squared sine of the angle between sight lines that are nearly one."""
+"""Squared sine of the angle between sight lines that are nearly parallel."""
 STANDS: Final = 0.4
-"""Share of the time in which the lower ankle is lower: that foot is on the floor."""
+"""Quantile of the lower ankle's height that is taken for a foot on the floor."""
 APART_MM: Final = (60.0, 80.0)
 SOLES_MM: Final = ((-45.0, -75.0), (60.0, 95.0))
 FACING_DEG: Final = (45.0, 75.0)
 MOTION_MM: Final = (40.0, 60.0)
-"""Difference between how far both views see joints move: the first is usual with a good rig, the
-second occurs with no good rig; belief falls in between. Motions of one take differ by 30 mm at
-most, motions of different takes mostly by 60. The bounds above rest on the same clips: with the
-right rig views lie 31 mm apart at most (56 mm for people that the network sees less well), facings
-differ by 5 degrees, and soles are -29 to 4 mm high (high heels lift ankles by 5 cm more). Two
-pictures of one camera differ in facing by the angle between the rig's cameras. Chosen on two
-performers and 16 synthetic people (docs/measurements.md)."""
+"""Difference between both views' motion of the joints, metres: the first is usual with a good
+rig, the second occurs with no good rig; belief falls in between. Motions of one take differ by
+30 mm at most, motions of different takes mostly by 60. The bounds above rest on the same clips:
+with the right rig views lie 31 mm apart at most (56 mm for people that the network sees less
+well), facings differ by 5 degrees, and soles are -29 to 4 mm high (high heels lift ankles by 5
+cm more). Two pictures of one camera differ in facing by the angle between the rig's cameras.
+Chosen on two performers and 16 synthetic people (docs/measurements.md)."""
 SUDDEN: Final = 0.2
-"""What is left of the belief in a rig that is contradicted in the last second alone."""
+"""Factor on the belief where only the last second contradicts a rig."""
 LEAST: Final = 0.05
-"""Share of the confidence that is left to a rig that is not believed."""
+"""Factor on the confidence for a rig that is not believed."""
 
 SURE_JOINT: Final = 0.7
-"""Joints of which a view is less sure do not count in the motion."""
+"""Confidence below which a joint does not count in the motion."""
 FARTHEST_M: Final = 0.2
-"""What is farther off counts so much: a joint that a view takes for another says nothing more."""
+"""Distance at which gaps saturate: a joint that a view confuses with another says no more."""
 
 _SHOULDERS, _KNEES, _ANKLES = (
     [n for n, name in enumerate(JOINT_NAMES) if name.endswith(part)]
@@ -56,30 +56,30 @@ _SHOULDERS, _KNEES, _ANKLES = (
 )
 _MIDDLE: Final = [[n] for n, name in enumerate(JOINT_NAMES) if "_" not in name or "top" in name]
 POINTS: Final = (*_MIDDLE, _SHOULDERS, _KNEES, _ANKLES)
-"""Joints, and middles of pairs: they are the same where a view exchanges sides."""
+"""Joints, and middles of pairs: the middles do not change where a view exchanges sides."""
 
 
 class State(NamedTuple):
-    """What the last seconds showed."""
+    """Observations of the last seconds."""
 
     samples: tuple[Vector, ...] = ()
-    """Of each instant, metres: the gaps of POINTS, those of the joints (NaN where a view is not
-    sure), and the lower ankle's height."""
+    """One row per instant, metres: the gaps of POINTS, those of the joints (NaN where a view is
+    not sure), and the lower ankle's height."""
     facings_deg: tuple[float, ...] = ()
-    """By how much view 1 had the person turned against view 2, whenever both were sure."""
+    """Facing in view 1 minus facing in view 2, for each instant in which both were sure."""
     last_s: float = -math.inf
-    """When the last of them was taken."""
+    """Time of the last row."""
     told: Agreement | None = None
 
 
 def step(state: State, rig: Rig, seen: TwoSeen, now_s: float) -> State:
-    """One instant more.
+    """Process one instant.
 
     Args:
-        state: What was seen before by the same rig.
+        state: Earlier observations by the same rig.
         rig: Two cameras without distortion.
-        seen: The person as both see them, without distortion.
-        now_s: When the first of them was taken.
+        seen: The person in both views, without distortion.
+        now_s: Time of the earlier of the two frames.
     """
     one, other = seen
     if one is None or other is None or not (_is_sure(one) and _is_sure(other)):
@@ -94,14 +94,14 @@ def step(state: State, rig: Rig, seen: TwoSeen, now_s: float) -> State:
     told = agreement_of(np.array(samples), facings) if len(samples) >= FEWEST else None
     if told is not None and told.believed > SUDDEN:
         last = agreement_of(np.array(samples[-FEWEST:]), facings[-FEWEST:])
-        if last.believed <= SUDDEN:  # what was before says nothing of how it is now
+        if last.believed <= SUDDEN:  # older observations say nothing about the present
             samples, facings, told = samples[-FEWEST:], facings[-FEWEST:], last
     return State(samples, facings, now_s, told)
 
 
 def agreement_of(samples: NDArray[np.float64], facings_deg: tuple[float, ...]) -> Agreement:
-    """What instants (n, points + 15 + 1) say together: of places errors that change are left out,
-    of the motion those that do not."""
+    """The agreement over instants (n, points + 15 + 1): places use the constant part of the
+    gaps, motion the varying part."""
     apart_m = np.sqrt(np.mean(np.median(samples[:, : len(POINTS)], axis=0) ** 2))
     apart_mm = 1e3 * float(apart_m)
     motion_mm = 1e3 * motion_m(samples[:, len(POINTS) : -1], FEWEST)
@@ -119,14 +119,15 @@ def agreement_of(samples: NDArray[np.float64], facings_deg: tuple[float, ...]) -
 
 
 def motion_m(gaps_m: NDArray[np.float64], fewest: int) -> float:
-    """How far views disagree how joints move, metres, by the gaps between their sight lines.
+    """Difference between the views' motion of the joints, metres, from the gaps between sight
+    lines.
 
     Args:
-        gaps_m: (n, joints) with their sign; NaN where a view is not sure.
-        fewest: Instants that must show a joint.
+        gaps_m: (n, joints) signed; NaN where a view is not sure.
+        fewest: Number of instants that must show a joint.
 
     Returns:
-        The root mean square of each joint's gaps about their median, over the joints that enough
+        Root mean square of each joint's gaps about their median, over the joints that enough
         instants show.
     """
     seen = gaps_m[:, np.isfinite(gaps_m).sum(axis=0) >= fewest]
@@ -137,7 +138,7 @@ def motion_m(gaps_m: NDArray[np.float64], fewest: int) -> float:
 
 
 def _left(value: float, usual: float, never: float) -> float:
-    """Share of the confidence that is left."""
+    """Factor on the confidence."""
     return float(np.interp(value, (usual, never), (1.0, LEAST)))
 
 
@@ -149,7 +150,7 @@ def _is_sure(person: Observation) -> bool:
 
 
 def _sample(rig: Rig, first: Landmarks, second: Landmarks) -> tuple[Vector, tuple[float, ...]]:
-    """(points + 15 + 1,) of an instant, and by how much the facings differ, where both are sure."""
+    """(points + 15 + 1,) of an instant, and the facings' difference where both are sure."""
     cameras = rig.cameras
     gaps_m, places_m = _met(cameras, _points(first), _points(second))
     lower_m = _lower_ankle_m(cameras, first, second)
@@ -158,7 +159,8 @@ def _sample(rig: Rig, first: Landmarks, second: Landmarks) -> tuple[Vector, tupl
 
 
 def _lower_ankle_m(cameras: tuple[Camera, ...], first: Landmarks, second: Landmarks) -> float:
-    """Height of the lower ankle, sides exchanged in a view where sight lines meet better so."""
+    """Height of the lower ankle, with a view's sides exchanged where sight lines then meet
+    better."""
     one, other = (np.array(each.joints_px)[_ANKLES] for each in (first, second))
     tried = [_met(cameras, one, given) for given in (other, other[::-1])]
     _, places_m = min(tried, key=lambda met: float(np.abs(met[0]).sum()))
@@ -168,7 +170,7 @@ def _lower_ankle_m(cameras: tuple[Camera, ...], first: Landmarks, second: Landma
 def _met(
     cameras: tuple[Camera, ...], one_px: NDArray[np.float64], other_px: NDArray[np.float64]
 ) -> tuple[Vector, NDArray[np.float64]]:
-    """How far sight lines of points (n, 2) miss each other, (n,), and where they are nearest."""
+    """Gaps (n,) between the sight lines of points (n, 2), and the points nearest to both."""
     one, other = rays(cameras[0], one_px), rays(cameras[1], other_px)
     start = arrays_of(cameras[0]).centre
     base = arrays_of(cameras[1]).centre - start
@@ -188,8 +190,8 @@ def _points(seen: Landmarks) -> NDArray[np.float64]:
 
 
 def _joint_gaps_m(cameras: tuple[Camera, ...], first: Landmarks, second: Landmarks) -> Vector:
-    """(15,) how far sight lines of the joints miss each other, sides exchanged in a view where they
-    meet better so; NaN where a view is not sure."""
+    """(15,) gaps between the joints' sight lines, with a view's sides exchanged where they then
+    meet better; NaN where a view is not sure."""
     one, other = (np.array(each.joints_px) for each in (first, second))
     tried = []
     for order in (slice(None), OTHER_SIDE):
@@ -204,7 +206,7 @@ def _joint_gaps_m(cameras: tuple[Camera, ...], first: Landmarks, second: Landmar
 def _turned(
     cameras: tuple[Camera, ...], seen: tuple[Landmarks, Landmarks], place_m: Vector
 ) -> tuple[float, ...]:
-    """By how much view 1 has the person turned against view 2, degrees; () where unsure."""
+    """Facing in view 1 minus facing in view 2, degrees; () where unsure."""
     if min(each.facing_confidence for each in seen) <= SURE_FACING:
         return ()
     yaws = []

@@ -1,4 +1,4 @@
-"""What is likeliest wrong with a rig that is not believable, and what to do about it."""
+"""The likeliest fault of a rig that is not believable, and the cure."""
 
 import math
 from typing import Final, NamedTuple
@@ -16,18 +16,19 @@ from common.body.body import Vector
 from common.rig.camera import Camera, Rig, as_matrix
 
 SIZES: Final = (0.25, 1 / 3, 0.5, 2 / 3, 0.75, 4 / 3, 1.5, 2.0, 3.0, 4.0)
-"""How much larger pictures are that a calibration may have been made for."""
+"""Scale factors of the pictures that a calibration may have been made for."""
 FREED: Final = {
     "turned": ("yaw_2", "pitch_2", "roll_2"),
     "focal": ("log_focal_1", "log_focal_2"),
     "moved": ("x_2", "height_2", "z_2"),
     "floor": ("height_1", "height_2"),
 }
-"""Single faults, and the numbers that would mend each."""
+"""Single faults, and the numbers of the guess that would mend each."""
 ONE_SIDE_DEG: Final = 15.0
-"""Two cameras see a person who faces any way turned by as much as they look apart, 30 at least."""
+"""Facing difference, degrees, at least 30, that two cameras see of a person who faces any way:
+the angle between them."""
 SIMPLER: Final = 1.0
-"""By how much (log likelihood) a number more must explain better."""
+"""Log likelihood that each additional number must gain."""
 AGAIN: Final = "calibrate again (tritrack calibrate person), or go on with --trust-calibration"
 
 
@@ -35,7 +36,7 @@ class _Mended(NamedTuple):
     name: str
     cost: float
     change: Vector
-    """Of the guess."""
+    """Half-width of the guess's range."""
 
 
 def advice_on(
@@ -46,16 +47,16 @@ def advice_on(
     clock: Clock | None = None,
     set_back_s: float = 0.0,
 ) -> str:
-    """The likeliest cause in a line, with its size; "" of a rig that is believable.
+    """The likeliest cause in one line, with its size; "" for a believable rig.
 
     Args:
-        rig: Of both cameras.
-        sighting: What both views show of the person.
-        period_s: From a frame to the next.
-        trust: What is wrong with the rig.
-        clock: Of view 2; None: it is looked for.
-        set_back_s: By how much the times of view 2 were set back before: an offset that the user
-            states takes the place of that.
+        rig: Both cameras.
+        sighting: Both views of the person.
+        period_s: Time between frames.
+        trust: The rig's assessment.
+        clock: Clock of view 2; None: it is estimated.
+        set_back_s: Time by which view 2 was already set back: an offset that the user states
+            replaces that.
     """
     if trust.believed:
         return ""
@@ -95,7 +96,7 @@ def advice_on(
 
 
 def _is_one_side(sighting: Sighting) -> bool:
-    """Whether both views have the person turned to them alike, mostly, wherever they stand."""
+    """Whether the person mostly faces both cameras alike, wherever they stand."""
     first, second = sighting.first, at_times(sighting.second, sighting.first.times_s)
     sure = np.minimum(first.facing_confidence, second.facing_confidence) > SURE_FACING
     turned = np.radians(first.facing_deg - second.facing_deg)[sure]
@@ -104,13 +105,13 @@ def _is_one_side(sighting: Sighting) -> bool:
 
 
 def exchanged_rig(rig: Rig) -> Rig:
-    """The rig with its cameras in the other order."""
+    """The rig with its cameras swapped."""
     first, second = rig.cameras
     return msgspec.structs.replace(rig, cameras=(second, first))
 
 
 def _size(rig: Rig, sighting: Sighting, period_s: float, clock: Clock) -> float:
-    """How much larger pictures are of which the calibration would be believable; 0: none."""
+    """Scale of the pictures for which the calibration would be believable; 0: none."""
     for size in SIZES:
         cameras = tuple(_scaled(camera, 1 / size) for camera in rig.cameras)
         smaller = msgspec.structs.replace(rig, cameras=cameras)
@@ -126,7 +127,7 @@ def _scaled(camera: Camera, scale: float) -> Camera:
 
 
 def _mended(case: Case) -> _Mended:
-    """The single fault whose mending explains most of what is seen."""
+    """The single fault whose cure explains most of the observations."""
     start = with_lateness(case).guess
     found = []
     for name, freed in FREED.items():

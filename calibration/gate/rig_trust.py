@@ -1,4 +1,4 @@
-"""Is a rig believable, by what both views show of the person alone?"""
+"""Whether a rig is believable, judged by both views of the person alone."""
 
 import math
 from typing import Final, NamedTuple
@@ -25,51 +25,53 @@ from common.rig.camera import Rig
 
 STEADY: Final = [n for n, name in enumerate(JOINT_NAMES) if not name.endswith(("elbow", "wrist"))]
 SURE: Final = 0.6
-"""Landmarks of both views that are surer than this are held against each other."""
+"""Confidence that a landmark must have in both views to be compared."""
 FEWEST, ENOUGH = 12, 40
-"""Moments in which both views must see the person, and as many as are looked at."""
+"""Fewest moments in which both views must see the person, and most that are used."""
 MOST_APART_MM: Final = 65.0
-"""Distance between the places that two views give a joint, above which a rig is not believed. With
-a good rig it is 28 mm at most for two performers, 52 mm for people that the network of landmarks
-sees less well (docs/measurements.md)."""
+"""Distance between the places that two views give a joint, metres, above which a rig is not
+believed. With a good rig it is 28 mm at most for two performers, 52 mm for people that the
+landmark network sees less well (docs/measurements.md)."""
 FLOOR_MM: Final = (-35.0, 85.0)
-"""Where a good rig has the soles, by ankles of bare feet: heels lift them by up to 8 cm."""
+"""Height of the soles with a good rig, metres, from ankles of bare feet: heels lift them by up
+to 8 cm."""
 STATURES_M: Final = (0.9, 2.3)
 MOST_LATE_FRAMES: Final = 0.75
 MOST_FACING_DEG: Final = 45.0
-"""Difference of the views' facings above which a rig is not believed: half of a quarter turn,
-because two pictures of one camera differ by the angle between the rig's cameras. With a good rig
-facings differ by 13 degrees at most (docs/measurements.md)."""
+"""Difference of the views' facings, degrees, above which a rig is not believed: half of a
+quarter turn, because two pictures of one camera differ by the angle between the rig's cameras.
+With a good rig facings differ by 13 degrees at most (docs/measurements.md)."""
 MOST_MOTION_MM: Final = 45.0
-"""Views of one take disagree by 30 mm at most, of different takes mostly by 60."""
+"""Difference between the views' motions, metres: 30 mm at most within one take, mostly 60
+between different takes."""
 
 
 class Trust(msgspec.Struct, frozen=True):
-    """How far two cameras and their clocks are to be believed."""
+    """Assessment of two cameras and their clocks."""
 
     believed: bool
     apart_mm: float
-    """How far both views place the joints from each other, errors that change left out."""
+    """Distance between the places that both views give the joints, varying errors left out."""
     apart_px: float
     late_frames: float
-    """By how many frames view 2 is late."""
+    """Delay of view 2, frames."""
     soles_mm: float
-    """Height of the lower foot's sole above the calibration's floor, mostly."""
+    """Median height of the lower foot's sole above the calibration's floor."""
     stature_m: float
-    """Of the person, by the calibration's lengths."""
+    """The person's stature by the calibration's lengths."""
     facing_deg: float
-    """How far both views disagree which way in the room the person faces, mostly."""
+    """Median difference between the views' headings of the person in the world."""
     motion_mm: float
-    """How far both views disagree how the person moves, at the lateness that explains most."""
+    """Difference between the views' motions of the person, at the likeliest delay."""
     moments: int
     odd: tuple[str, ...] = ()
-    """What is not believable: apart, late, floor, stature, facing, motion."""
+    """The unbelievable items: apart, late, floor, stature, facing, motion."""
     advice: str = ""
-    """What is the likeliest cause, and what to do; "" where all is well."""
+    """The likeliest cause and its cure; "" for a good rig."""
 
 
 class Case(NamedTuple):
-    """A rig and what is held against it."""
+    """A rig and the observations that it is compared with."""
 
     guess: Vector
     evidence: Evidence
@@ -77,13 +79,13 @@ class Case(NamedTuple):
 
 
 def case_of(rig: Rig, sighting: Sighting, clock: Clock | None = None) -> Case | None:
-    """A rig and the person before it, whose stature is as the rig has it; None where both views
-    see too little of a person.
+    """A rig and the person before it, with the stature by that rig; None where both views see too
+    little of a person.
 
     Args:
-        rig: Of both cameras.
-        sighting: What both views show.
-        clock: Of view 2, where it is known.
+        rig: Both cameras.
+        sighting: Both views.
+        clock: Clock of view 2, where it is known.
     """
     ideal, clock = as_ideal(sighting, rig), clock or clock_of(sighting)
     known = with_clocks(_held(guess_of(rig), known_of(rig.width, 1.75, 1)), (clock,))
@@ -102,7 +104,7 @@ def case_of(rig: Rig, sighting: Sighting, clock: Clock | None = None) -> Case | 
 
 
 def _held(rig: Vector, known: Known) -> Known:
-    """What is believed where a rig is given: it."""
+    """The prior where a rig is given: the rig itself."""
     mean, sigma, soft = known.mean.copy(), known.sigma.copy(), known.soft.copy()
     mean[:RIG] = rig
     sigma[:RIG] = (0.3, 0.3, 0.2, 0.2, 0.5, 0.3, 0.2, 0.2, 1.0, 0.5, 1.0)
@@ -112,7 +114,7 @@ def _held(rig: Vector, known: Known) -> Known:
 
 
 def _stature_m(one: Explained) -> float:
-    """How tall the person is by a rig: the lengths that stand upon each other."""
+    """Stature by a rig: the sum of the lengths from ankle to crown."""
     near, far = prior.ENDS.T
     long_m = np.linalg.norm(one.met.points_m[:, far] - one.met.points_m[:, near], axis=-1)
     total = 0.0
@@ -124,8 +126,8 @@ def _stature_m(one: Explained) -> float:
 
 
 def with_lateness(case: Case) -> Fit:
-    """The rig with the lateness of view 2 that explains most, near its clock where that is found;
-    all else is kept."""
+    """The rig with the delay of view 2 that fits best, near its clock where that is known; the
+    rest is kept."""
     free = np.zeros(len(case.guess), np.bool_)
     free[LATE] = True
     fits = []
@@ -139,13 +141,13 @@ def with_lateness(case: Case) -> Fit:
 def trust_of(
     rig: Rig, sighting: Sighting, period_s: float, clock: Clock | None = None
 ) -> Trust | None:
-    """Whether a rig and its clocks are believable; None where too little is seen to say.
+    """Assessment of a rig and its clocks; None where too little is seen.
 
     Args:
-        rig: Of both cameras.
-        sighting: What both views show.
-        period_s: Between frames.
-        clock: Of view 2, where it is known.
+        rig: Both cameras.
+        sighting: Both views.
+        period_s: Time between frames.
+        clock: Clock of view 2, where it is known.
     """
     case = case_of(rig, sighting, clock)
     if case is None:
@@ -170,11 +172,11 @@ def trust_of(
 
 
 def apart(one: Explained, evidence: Evidence) -> float:
-    """How far views place the joints from each other, metres.
+    """Distance between the views' places of the joints, metres.
 
-    Of each joint the median, with its sign, so that errors that change do not count; then the
-    root mean square over the joints. Elbows and wrists are left out, for a view that guesses
-    them behind the body guesses alike for seconds.
+    The median of each joint, signed, so that varying errors do not count; then the root mean square
+    over the joints. Elbows and wrists are left out: a view that guesses them behind the body makes
+    the same error for seconds.
     """
     sure = np.minimum(evidence.clips[0].first.confidence, one.second.confidence) >= SURE
     medians = [
@@ -186,13 +188,13 @@ def apart(one: Explained, evidence: Evidence) -> float:
 
 
 def _motion_m(one: Explained, evidence: Evidence) -> float:
-    """How far views disagree how the joints move, metres."""
+    """Difference between the views' motions of the joints, metres."""
     sure = np.minimum(evidence.clips[0].first.confidence, one.second.confidence) >= SURE_JOINT
     return motion_m(np.where(one.used & sure, one.met.gap_m, np.nan), FEWEST // 2)
 
 
 def soles_m(one: Explained, stature_m: float) -> float:
-    """How high the lower foot's sole is, mostly."""
+    """Median height of the lower foot's sole."""
     ankles = np.where(one.used[:, prior.ANKLES], one.met.points_m[:, prior.ANKLES, 1], np.inf).min(
         axis=1
     )

@@ -1,4 +1,4 @@
-"""Does the person move? What each view's silhouette shows of the last half second."""
+"""Whether the person moves, by each view's silhouettes in the last half second."""
 
 from typing import Final, NamedTuple
 
@@ -8,8 +8,8 @@ from common.bus.instant import Instant
 from common.bus.messages import MOTION_S, View
 
 MOVED: Final = 0.15
-"""Share of the silhouette's pixels that change from which a person moves. In 95 % of the half
-seconds of recorded motion it is 0.05 at least, in the median 0.34 (docs/measurements.md)."""
+"""Share of the silhouette's pixels that changes from which on a person moves. In 95 % of the
+half seconds of recorded motion it is 0.05 at least, in the median 0.34 (docs/measurements.md)."""
 
 
 class Shown(NamedTuple):
@@ -21,16 +21,16 @@ class Shown(NamedTuple):
 
 
 State = tuple[tuple[Shown, ...], ...]
-"""The silhouettes of each view, oldest first: the last MOTION_S, and one that is older."""
+"""The silhouettes of each view, oldest first: the last MOTION_S, and one older."""
 
 
 def init(cameras: int) -> State:
-    """Nothing was seen by so many views."""
+    """The state of that many views before any silhouette."""
     return ((),) * cameras
 
 
 def step(state: State, instant: Instant) -> State:
-    """One instant more; a view without a person shows no motion."""
+    """Process one instant; a view without a person shows no motion."""
     return tuple(_with(own, view) for own, view in zip(state, instant.views, strict=True))
 
 
@@ -45,7 +45,7 @@ def _with(own: tuple[Shown, ...], view: View | None) -> tuple[Shown, ...]:
 
 
 def moves(state: State) -> tuple[bool, ...]:
-    """Whether the person has moved in each view within MOTION_S; False where that is not known."""
+    """Whether the person has moved in each view within MOTION_S; False where that is unknown."""
     return tuple(_moves(own) for own in state)
 
 

@@ -17,7 +17,7 @@ Content = TypeVar("Content", Markers, Poles)
 
 
 def run_markers(path: Path) -> tuple[Aim, ...]:
-    """How each camera of a file of line markers points.
+    """The aim of each camera in a file of line markers.
 
     Raises:
         CalibrationError: When the file cannot be read or a marker is no line.
@@ -31,13 +31,14 @@ def run_poles(path: Path, out: Path, replace: bool = False) -> Quality:
 
     Args:
         path: The file of poles.
-        out: The file to write; its folder is made where it is not there.
-        replace: What stands there may be lost; it may have taken an afternoon with poles.
+        out: The file to write; its folder is created where missing.
+        replace: True: an existing file may be replaced, although its poles may have taken an
+            afternoon.
 
     Raises:
-        CalibrationError: When a file cannot be read or written, a length is in another unit, or
-            the poles do not suffice.
-        FileRefused: When a file would be lost.
+        CalibrationError: When a file cannot be read or written, a length is in another unit, or the
+            poles do not suffice.
+        FileRefused: When an existing file would be replaced.
     """
     measured = read_points(path, Poles)
     refuse_other_units(measured)
@@ -48,7 +49,8 @@ def run_poles(path: Path, out: Path, replace: bool = False) -> Quality:
 
 
 def write_rig(path: Path, rig: Rig, quality: msgspec.Struct | None = None) -> None:
-    """Write a rig as `calibration.json`, its quality beside it; its folder where there is none.
+    """Write a rig as `calibration.json`, with its quality beside it; the folder is created where
+    missing.
 
     Raises:
         CalibrationError: When the file cannot be written.
@@ -60,7 +62,7 @@ def write_rig(path: Path, rig: Rig, quality: msgspec.Struct | None = None) -> No
 
 
 def write_text(path: Path, text: str) -> None:
-    """Write a calibration's text; its folder where there is none.
+    """Write a calibration's text; the folder is created where missing.
 
     Raises:
         CalibrationError: When the file cannot be written.
@@ -77,12 +79,12 @@ def read_points(path: Path, kind: type[Content]) -> Content:
     """A file of measured points, TOML or JSON.
 
     Raises:
-        CalibrationError: When it cannot be read, or says what cannot be meant.
+        CalibrationError: When it cannot be read, or holds impossible values.
     """
     decode = msgspec.json.decode if path.suffix == ".json" else msgspec.toml.decode
     try:
         content = decode(path.read_bytes(), type=kind)
-        json.dumps(msgspec.to_builtins(content), allow_nan=False)  # TOML has nan and inf
+        json.dumps(msgspec.to_builtins(content), allow_nan=False)  # TOML allows nan and inf
     except OSError as error:
         raise CalibrationError(f"cannot read the points {path}: {error.strerror}") from error
     except (msgspec.DecodeError, RecursionError) as error:

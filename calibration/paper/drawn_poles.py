@@ -1,4 +1,4 @@
-"""Poles as a camera should show them by what they gave of it."""
+"""Poles as a calibrated camera should show them."""
 
 import numpy as np
 
@@ -9,11 +9,11 @@ from common.body.body import Vector
 def drawn_poles(measured: Poles, number: int, known: CameraQuality) -> Vector:
     """Top and foot of every pole in the picture of camera 1 or 2, seen or not.
 
-    Its axis lies where the poles put it (`off_centre_px`), so what the tops are off is what
-    `misfit_px` is the root mean square of.
+    The axis lies where the poles put it (`off_centre_px`), so `misfit_px` is the root mean square
+    of the tops' distances.
 
     Returns:
-        (n, 2, 2): pole; top, foot; column, row, pixels. NaN where it is not before the camera.
+        (n, 2, 2): pole; top, foot; column, row, pixels. NaN behind the camera.
     """
     places = np.array([(pole.x_m, pole.z_m) for pole in measured.poles]).reshape(-1, 2)
     across_m = places[:, 0] if number == 1 else places[:, 1]

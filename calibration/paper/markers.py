@@ -1,4 +1,4 @@
-"""How a camera points, from the line markers that it shows (section 4.1, steps 1-4)."""
+"""The aim of a camera, from the line markers in its picture (section 4.1, steps 1-4)."""
 
 import math
 from typing import Annotated, Final
@@ -20,7 +20,7 @@ ROUNDS: Final = 10
 
 
 class MarkerView(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What one camera shows of its two line markers, pixels."""
+    """One camera's points on its two line markers, pixels."""
 
     name: str
     focal_px: Positive
@@ -39,33 +39,33 @@ class Markers(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Aim(msgspec.Struct, frozen=True):
-    """How far a camera points from where it should, degrees."""
+    """Angles between a camera's aim and the nominal one, degrees."""
 
     name: str
     yaw_deg: float
     """Positive: it looks too far to the right."""
     pitch_deg: float
-    """Positive: it looks too far up."""
+    """Positive: it looks too high."""
     roll_deg: float
     """Positive: it is turned clockwise, as seen from behind it."""
     skew_deg: float
-    """By how much the two markers miss the right angle: a marker or the camera stands off."""
+    """Deviation of the two markers from a right angle: a marker or the camera is misplaced."""
 
 
 def line_markers(view: MarkerView, size: tuple[int, int]) -> Aim:
-    """Yaw, pitch and roll by which a camera misses the direction that the markers define.
+    """Yaw, pitch and roll of a camera relative to the direction that the markers define.
 
-    The marker on the ground and the lens span the upright plane that the camera should look
-    along, the marker on the wall and the lens the level one. The rotation is sought that brings
-    both planes into the camera's axes with the least distance of the points from them. It is
-    exact for any error, but the camera must stand where it should (step (1)).
+    The marker on the ground and the lens span the vertical plane that the camera should look along,
+    the marker on the wall and the lens the level plane. The result is the rotation that brings both
+    planes into the camera's axes with the least distance of the points from them. It is exact for
+    any error of aim, but the camera must stand in its place (step (1)).
 
     Args:
         view: Points of both markers.
         size: Width and height of the picture.
 
     Raises:
-        CalibrationError: When the points of a marker make no line, or one that runs the wrong way.
+        CalibrationError: When the points of a marker form no line, or one in the wrong direction.
 
     Source: section 4.1, steps (2)-(4) (P42).
     """
@@ -82,14 +82,14 @@ def line_markers(view: MarkerView, size: tuple[int, int]) -> Aim:
 
 
 def fitted_lines(view: MarkerView, size: tuple[int, int]) -> Vector:
-    """Where the markers lie in the picture by the aim that their points give.
+    """The markers' lines in the picture, by the aim from their points.
 
     Returns:
         (2, 3): a, b, c of a line a u + b v + c = 0, pixels, for the marker on the ground and that
-        on the wall; a^2 + b^2 = 1, so that the left side is how far a point is off.
+        on the wall; a^2 + b^2 = 1, so that the left side is a point's distance.
 
     Raises:
-        CalibrationError: When the points of a marker make no line.
+        CalibrationError: When the points of a marker form no line.
     """
     normals = _rotation(_rays_of_both(view, size)).T[:2]
     across_down = normals[:, :2] / view.focal_px
@@ -103,7 +103,8 @@ def _rays_of_both(view: MarkerView, size: tuple[int, int]) -> list[Vector]:
 
 
 def _rotation(rays: list[Vector]) -> Vector:
-    """Aimed axes to the camera's, (3, 3): column 0 square to the first rays, 1 to the others.
+    """Rotation from aimed axes to the camera's, (3, 3): column 0 is perpendicular to the first
+    rays, column 1 to the others.
 
     Gauss-Newton on the distances of the points from their planes, from no rotation.
     """
@@ -117,7 +118,7 @@ def _rotation(rays: list[Vector]) -> Vector:
 
 
 def _rays(view: MarkerView, marker: str, size: tuple[int, int]) -> Vector:
-    """What the points of a marker show, (n, 3), camera axes, depth 1."""
+    """Rays of a marker's points, (n, 3), camera axes, depth 1."""
     points = np.array(getattr(view, marker), np.float64).reshape(-1, 2)
     if len(points) < 2 or np.ptp(points, axis=0).max() < 1.0:
         raise CalibrationError(f"{marker} of {view.name} is no line: give two points or more")
@@ -125,7 +126,7 @@ def _rays(view: MarkerView, marker: str, size: tuple[int, int]) -> Vector:
 
 
 def _normal(view: MarkerView, rays: Vector, axis: int) -> Vector:
-    """Normal of the plane that one marker alone defines; it should be along `axis` (0 or 1)."""
+    """Normal of the plane of one marker; it should be along `axis` (0 or 1)."""
     normal: Vector = np.linalg.svd(rays)[2][2]
     if abs(normal[axis]) < abs(normal[1 - axis]):
         marker, way = (("floor_px", "up and down"), ("wall_px", "across"))[axis]

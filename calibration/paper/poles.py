@@ -1,4 +1,4 @@
-"""Where the cameras stand and how long their lenses are, from the tops of poles (section 4.1)."""
+"""Camera positions and focal lengths, from the tops of poles (section 4.1)."""
 
 from typing import Annotated, Final, NamedTuple
 
@@ -14,27 +14,28 @@ Positive = Annotated[float, msgspec.Meta(gt=0)]
 PositiveCount = Annotated[int, msgspec.Meta(gt=0)]
 
 READING_SD_PX: Final = 0.5 / 3**0.5
-"""Standard deviation of a position that is read to the pixel: evenly within +-0.5 px."""
+"""Standard deviation of a position that is read to the pixel: uniform within +-0.5 px."""
 TAPE_SD_M: Final = 0.01
-"""Standard deviation of a distance to a lens that is taken by tape."""
+"""Standard deviation of a tape-measured distance to a lens, metres."""
 ROUNDS: Final = 20
 """Gauss-Newton converges within five or never."""
 SINGULAR: Final = 1e-9
-"""Least over greatest singular value below which the poles leave something open."""
+"""Ratio of least to greatest singular value below which the poles leave a number undetermined."""
 NEAREST_M: Final = 0.01
-"""A pole that is nearer to a lens, or behind it, was not seen."""
+"""Smallest distance of a pole from a lens, metres; a nearer one, or one behind it, cannot be
+seen."""
 LENGTHS_M: Final = {
     "pole_height_m": (0.2, 10.0),
     "distance_1_m": (0.2, 50.0),
     "distance_2_m": (0.2, 50.0),
 }
-"""What a length by tape can be, least and most: who means centimetres is beyond."""
+"""Bounds of a length, metres: beyond them the user probably means centimetres."""
 FARTHEST_M: Final = 50.0
-"""Of a pole, from the origin along either axis."""
+"""Bound of a pole's distance from the origin along either axis, metres."""
 
 
 class Pole(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A pole on the floor, and where each camera shows its top; None where one does not."""
+    """A pole on the floor, and its top in each camera's picture; None where it is not visible."""
 
     x_m: float
     z_m: float
@@ -56,7 +57,7 @@ class Poles(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class CameraQuality(msgspec.Struct, frozen=True, kw_only=True):
-    """What the poles give of one camera, with one standard deviation of each."""
+    """One camera's numbers from the poles, each with one standard deviation."""
 
     name: str
     focal_px: float
@@ -64,24 +65,24 @@ class CameraQuality(msgspec.Struct, frozen=True, kw_only=True):
     distance_m: float
     distance_sd_m: float
     height_m: float
-    """Height of the lens, from that of the poles."""
+    """Height of the lens, relative to the poles' height."""
     off_centre_px: float
-    """Column of the camera's axis, from the centre column: 0 where the markers are heeded."""
+    """Column of the camera's axis, from the centre column: 0 where the aim follows the markers."""
     misfit_px: float
-    """Root mean square of what the tops are off; about 0.3 when they are read to the pixel."""
+    """Root mean square of the tops' residuals; about 0.3 when they are read to the pixel."""
 
 
 class Quality(msgspec.Struct, frozen=True):
-    """How well a rig is known."""
+    """Precision of a rig."""
 
     cameras: tuple[CameraQuality, ...]
 
 
 def refuse_other_units(measured: Poles) -> None:
-    """See that lengths can be metres.
+    """Refuse lengths that cannot be metres.
 
     Raises:
-        CalibrationError: When one is out of bounds; it asks whether the hundredth was meant.
+        CalibrationError: When one is out of bounds; it asks whether centimetres were meant.
     """
     for name, (low, high) in LENGTHS_M.items():
         _refuse_beyond(name, getattr(measured, name), low, high)
@@ -123,7 +124,7 @@ def poles(measured: Poles) -> tuple[Rig, Quality]:
 
 
 def camera_by_poles(measured: Poles, number: int) -> CameraQuality:
-    """One of the two cameras (1 or 2), by the poles that it shows.
+    """One of the two cameras (1 or 2), from the poles in its picture.
 
     Raises:
         CalibrationError: When they do not determine it.
@@ -150,16 +151,16 @@ def camera_by_poles(measured: Poles, number: int) -> CameraQuality:
 
 
 class _Tops(NamedTuple):
-    """The tops of poles as one camera shows them, and the poles as it stands to them."""
+    """The tops of poles in one camera's picture, and the poles relative to that camera."""
 
     across_m: Vector
-    """To the right of its axis: X for camera 1, Z for camera 2."""
+    """Distance to the right of its axis: X for camera 1, Z for camera 2."""
     towards_m: Vector
-    """From the origin to it: Z for camera 1, -X for camera 2."""
+    """Distance from the origin towards the camera: Z for camera 1, -X for camera 2."""
     columns_px: Vector
-    """From the centre column, right positive."""
+    """Column from the centre column, right positive."""
     rows_px: Vector
-    """From the centre row, up positive."""
+    """Row from the centre row, up positive."""
     taped_m: float | None
 
 
@@ -178,7 +179,8 @@ def _tops(measured: Poles, camera: int) -> _Tops:
 
 
 def _fit(tops: _Tops, name: str) -> tuple[list[float], list[float], float]:
-    """(distance, focal length, focal length times rise, off-centre), their bars, the misfit."""
+    """(distance, focal length, focal length times rise, off-centre), their deviations, the
+    misfit."""
     values = _start(tops, name)
     for _ in range(ROUNDS):
         jacobian, residual = _linear(tops, values)
@@ -196,7 +198,8 @@ def _fit(tops: _Tops, name: str) -> tuple[list[float], list[float], float]:
 
 
 def _start(tops: _Tops, name: str) -> Vector:
-    """The distance by tape or from the rows, the rest from the columns given that (M2, P43)."""
+    """The distance by tape or from the rows; the rest from the columns, given the distance (M2,
+    P43)."""
     rows = np.column_stack([tops.rows_px, -np.ones_like(tops.rows_px)])
     by_rows = np.linalg.lstsq(rows, tops.rows_px * tops.towards_m)[0]
     distance_m = by_rows[0] if tops.taped_m is None else tops.taped_m
@@ -210,7 +213,7 @@ def _start(tops: _Tops, name: str) -> Vector:
 
 
 def _linear(tops: _Tops, values: Vector) -> tuple[Vector, Vector]:
-    """Jacobian (m, 4) and residual (m,), pixels, of columns, rows and tape at some values."""
+    """Jacobian (m, 4) and residual (m,), pixels, of columns, rows and tape at given values."""
     distance_m, focal_px, rise, off_centre_px = values
     near, none = 1 / (distance_m - tops.towards_m), np.zeros_like(tops.across_m)
     bearing = tops.across_m * near

@@ -1,1 +1,1 @@
-"""Two cameras calibrated by the person who moves before them: nothing is measured or printed."""
+"""Calibration of two cameras by a moving person: nothing is measured or printed."""

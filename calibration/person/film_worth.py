@@ -1,4 +1,4 @@
-"""As how many moments a video counts, by how far its landmarks err alike from first to last."""
+"""The number of independent moments of a clip, from how its landmarks' errors last."""
 
 from collections.abc import Sequence
 from typing import Final
@@ -8,24 +8,24 @@ import numpy as np
 from calibration.person.rig_residuals import Explained
 
 FITTED: Final = 20.0
-"""How many numbers are fitted: two cameras, a person's lengths and a clock. A video that seems to
-have as many moments counts half of them: the fit has taken up what landmarks err by."""
+"""Number of fitted values: two cameras, a person's lengths and a clock. Where the estimate comes
+near this number, half of it is used: the fit has absorbed the landmarks' errors."""
 FARTHEST: Final = 3.0
-"""Sigmas beyond which a miss counts as so many."""
+"""Residual, sigmas, at which misses are capped."""
 LEAST: Final = 2.0
 
 
 def measured_worth(seen: Sequence[Explained]) -> float:
-    """As how many moments whose landmarks err by themselves all clips count.
+    """Number of moments with independent landmark errors that all clips together count for.
 
-    The sight lines of one joint miss each other now on this side, now on that, where errors come
-    and go; over n independent moments they do by 1 / sqrt(n) sigmas on average. What is left of
-    them on average is therefore what the video errs by: errors that last some frames and habits
-    of a network alike.
+    The signed gaps between the sight lines of one joint average out where errors are independent:
+    over n independent moments their mean is 1 / sqrt(n) sigmas. The mean that is left is therefore
+    the clip's error: errors that last some frames and systematic errors of a network alike.
 
     Args:
-        seen: What a rig makes of each clip that was fitted as if landmarks had no habits. What is
-            believed of any rig would else keep it from the video, and that would look like one.
+        seen: Each clip under a rig that was fitted as if landmarks had no systematic errors.
+            Otherwise the priors would keep the rig from the clip, and that would look like such an
+            error.
     """
     gaps = np.concatenate([np.clip(one.met.gap, -FARTHEST, FARTHEST) for one in seen])
     used = np.concatenate([one.used & one.met.before for one in seen])

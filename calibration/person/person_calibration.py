@@ -1,4 +1,4 @@
-"""From what both views saw of a person to a calibration, its quality and its error bars."""
+"""From both views of a person to a calibration, its quality and its error bars."""
 
 import math
 from typing import Final
@@ -27,21 +27,21 @@ from common.rig.camera import Rig, centre
 from common.rig.rig_file import CalibrationError
 
 FEWEST: Final = 12
-"""Moments in which both views must see the person."""
+"""Fewest moments in which both views must see the person."""
 FEW, FEW_EACH = 24, 6
-"""Number of moments that decide which start is right, and of each clip where there are several."""
+"""Number of moments used to choose the right start, and of each clip where there are several."""
 STARTS: Final = 3
-"""As many of the likeliest starts with camera 2 on each side of camera 1 are followed: of walks all
-likely ones may be of mirror images (synthetic rigs, seeds from 1000 on)."""
+"""Number of the likeliest starts that are followed with camera 2 on each side of camera 1: all
+the likely ones of a walk may be mirror images (synthetic rigs, seeds from 1000 on)."""
 YAW: Final = PLACE["yaw_2"]
 ELSEWHERE: Final = math.cos(math.radians(45.0))
-"""Starts that end with camera 2 turned by less are one: two that are followed would end alike."""
+"""Starts whose camera 2 ends within this angle, degrees, count as one: they would end alike."""
 AT_FIRST: Final = 15
-"""Moments by which the person is placed at first."""
+"""Number of moments used to place the person at first."""
 NEAR, LEAST_MET = 3.0, 0.4
-"""Sigmas within which sight lines meet, and what share of the landmarks of a video must. Of
-synthetic rigs and people 0.89 and more do (seeds from 1000 on), of two videos of different people
-0.52 to 0.92, of joints that wander each for itself 0.11 at most (22 seeds)."""
+"""Residual, sigmas, within which sight lines meet, and the share of a clip's landmarks for which
+they must. In synthetic rigs and people 0.89 and more do (seeds from 1000 on), in two videos of
+different people 0.52 to 0.92, in independently wandering joints 0.11 at most (22 seeds)."""
 
 
 def calibrated_by_person(
@@ -53,13 +53,13 @@ def calibrated_by_person(
     """Find both cameras from clips of one rig and one person.
 
     Args:
-        sightings: What both views saw in each clip.
-        stature_m: Of the person: the measure of all lengths.
-        fov_deg: How wide the cameras see, where it is known.
-        clocks: Of view 2 in each clip, where that is known.
+        sightings: Both views of each clip.
+        stature_m: The person's stature: it gives the scale.
+        fov_deg: Field of view of the cameras, where it is known.
+        clocks: The clock of view 2 in each clip, where it is known.
 
     Raises:
-        CalibrationError: When both views see too little of a person, or what fits no rig.
+        CalibrationError: When both views see too little of a person, or fit no rig.
     """
     clocks = clocks or tuple(clock_of(one) for one in sightings)
     known = with_clocks(
@@ -88,7 +88,8 @@ def calibrated_by_person(
 
 
 def best_fit(evidence: Evidence, clocks: tuple[Clock, ...]) -> Fit:
-    """The best of all starts: cameras alone first, then all, then with all moments."""
+    """The best of all starts: first the cameras alone are fitted, then everything, then with all
+    moments."""
     few = evidence.thinned(max(FEW, FEW_EACH * len(evidence.clips)))
     every = np.ones(len(evidence.known.mean), np.bool_)
     cameras = every & (np.arange(len(every)) < RIG)
@@ -110,14 +111,15 @@ def best_fit(evidence: Evidence, clocks: tuple[Clock, ...]) -> Fit:
 
 
 def _of_both_sides(starts: list[Vector]) -> list[Vector]:
-    """The first few with camera 2 to the right of camera 1, and with it to the left."""
+    """The first few starts with camera 2 to the right of camera 1, and those with it to the
+    left."""
     right = [start for start in starts if math.sin(start[YAW]) > 0.0]
     left = [start for start in starts if math.sin(start[YAW]) <= 0.0]
     return [*right[:STARTS], *left[:STARTS]]
 
 
 def _unlike(rough: list[Fit]) -> list[Fit]:
-    """The best fit, and the best of those with camera 2 elsewhere, such as the mirror image."""
+    """The best fit, and the best one with camera 2 elsewhere, such as the mirror image."""
     best = min(rough, key=lambda each: each.cost)
     off = [math.cos(each.guess[YAW] - best.guess[YAW]) for each in rough]
     others = [one for one, near in zip(rough, off, strict=True) if near < ELSEWHERE]
@@ -125,7 +127,7 @@ def _unlike(rough: list[Fit]) -> list[Fit]:
 
 
 def _met_share(seen: list[Explained], evidence: Evidence) -> float:
-    """Of what view 1 is sure of, the share whose sight lines meet before both cameras."""
+    """Of view 1's sure landmarks, the share whose sight lines meet in front of both cameras."""
     clips = zip(evidence.clips, seen, strict=True)
     shown = sum(np.isfinite(sigma_px(clip.first, clip.units_px[0])).sum() for clip, _ in clips)
     met = sum((one.used & one.met.before & (np.abs(one.met.gap) < NEAR)).sum() for one in seen)
@@ -164,7 +166,7 @@ def _quality(
 def _cameras(
     guess: Vector, covariance: Vector, rig: Rig, person_m: Vector
 ) -> tuple[CameraQuality, ...]:
-    """Each camera as it is published, with what the guess's covariance makes of its errors."""
+    """Each camera as published, with its errors from the guess's covariance."""
     told = _told(guess, person_m)
     steps = STEP * np.eye(len(covariance))
     moved = np.stack([(_told(guess + step, person_m) - told) / STEP for step in steps])
@@ -183,7 +185,8 @@ def _cameras(
 
 
 def _told(guess: Vector, person_m: Vector) -> Vector:
-    """(14,) what is published of a rig: of each camera focal length, position, turn in degrees."""
+    """(14,) the published numbers of a rig: each camera's focal length, position and turn in
+    degrees."""
     cameras = pinholes(guess)
     origin = origin_of(cameras, person_m)
     rows = []

@@ -1,4 +1,5 @@
-"""How certain a rig by the person is: its covariance, and what is not known well enough."""
+"""Uncertainty of a rig found by the person: its covariance, and the numbers that are too
+uncertain."""
 
 import math
 from typing import Final
@@ -11,35 +12,36 @@ from calibration.tracks.sight_lines import Numbers
 from common.body.body import Vector
 
 STEP: Final = 1e-4
-"""By which numbers are moved to see what moves with them."""
+"""Step of each number in numerical derivatives."""
 UNSURE_FOCAL, UNSURE_TURN_DEG, UNSURE_FRAMES = 0.04, 2.0, 0.3
-"""Error bars, one sigma, above which something is not known: synthetic rigs within them were right
-to 5 % of focal length, 3 degrees and half a frame (seeds from 1000 on,
+"""Standard deviations above which a number counts as unknown: synthetic rigs within them were
+right to 5 % of focal length, 3 degrees and half a frame (seeds from 1000 on,
 `benchmarks/wild_rigs.py`)."""
 CLOCK_FRAMES: Final = 0.15
-"""No clock is known better, frames: between frames joints are taken to go straight on (synthetic
-rigs, seeds from 1000 on)."""
+"""Smallest standard deviation of a clock, frames: joints are interpolated linearly between
+frames (synthetic rigs, seeds from 1000 on)."""
 
 
 def covariance_of(found: Fit) -> Numbers:
-    """(guess, guess) of what was found."""
+    """(guess, guess) covariance of the result."""
     covariance: Numbers = np.asarray(np.linalg.pinv(found.jacobian.T @ found.jacobian), np.float64)
     return covariance
 
 
 def late_errors_frames(covariance: Numbers, period_s: float) -> Vector:
-    """(clips,) how uncertain the clocks are, frames, one sigma."""
+    """(clips,) standard deviations of the clocks, frames."""
     posterior = np.sqrt(np.diag(covariance)[LATE:]) / period_s
     errors: Vector = np.hypot(posterior, CLOCK_FRAMES)
     return errors
 
 
 def unsure_of(found: Fit, period_s: float) -> tuple[str, ...]:
-    """What of a rig is not known well enough to be relied on, with its error bar (one sigma).
+    """The numbers of a rig that are too uncertain to be relied on, each with its standard
+    deviation.
 
     Args:
-        found: The whole rig, all of it free.
-        period_s: Between frames of view 2.
+        found: The rig, with all its numbers free.
+        period_s: Time between frames of view 2.
     """
     covariance = covariance_of(found)
     errors = np.sqrt(np.diag(covariance))
@@ -55,7 +57,7 @@ def unsure_of(found: Fit, period_s: float) -> tuple[str, ...]:
 
 
 def turn_error_deg(guess: Vector, covariance: Numbers) -> float:
-    """How far the turn of one camera against the other may be off, about any axis, one sigma."""
+    """Standard deviation of one camera's turn relative to the other, about any axis."""
     turn = _turn(guess)
     axes = np.zeros((3, len(guess)))
     for n in range(FOCALS.stop, RIG):

@@ -1,4 +1,4 @@
-"""What a rig is fitted to: both views of many moments, and what is believed before."""
+"""The data of a rig's fit: both views at many moments, and the priors."""
 
 from typing import Final, NamedTuple
 
@@ -18,12 +18,13 @@ from calibration.tracks.rig_guess import LATE
 from common.body.body import OTHER_SIDE, Vector
 
 CLOSE: Final = 0.03
-"""What a landmark's confidence speaks of: how probably it is less than so many statures off."""
+"""Error, statures, to which a landmark's confidence refers: its probability of being less than
+this off."""
 LEAST_SURE: Final = 0.12
-"""Landmarks less sure than this are left out."""
+"""Confidence below which landmarks are left out."""
 
 INDEPENDENT_HZ: Final = 1.0
-"""How often in a second a landmark errs anew: the network errs alike in neighbouring frames."""
+"""Rate of independent landmark errors, Hz: the network errs alike in neighbouring frames."""
 MOST_INDEPENDENT: Final = 5.0
 """Number of independent moments that a clip counts for at first, however long it is: the network's
 systematic errors do not average out. A minute of each of two performers gave rigs that were 46 and
@@ -31,55 +32,55 @@ systematic errors do not average out. A minute of each of two performers gave ri
 estimates the number from the clip itself."""
 
 Sides = NDArray[np.bool_]
-"""(n, 3) whether one view has the sides of a part the other way round than the other."""
+"""(n, 3) whether one view has the sides of a part exchanged relative to the other."""
 
 
 class Known(NamedTuple):
-    """What is believed of rig and person before a person is seen."""
+    """Priors on rig and person before any observation."""
 
     mean: Vector
-    """As a guess (`rig_guess.py`), where something is believed."""
+    """The prior mean as a guess (`rig_guess.py`), where there is a prior."""
     sigma: Vector
-    """inf: nothing is believed."""
+    """Standard deviations; inf: no prior."""
     soft: NDArray[np.bool_]
-    """What is mostly so, but may be quite otherwise."""
+    """Heavy-tailed priors: mostly true, but possibly far off."""
     stature_m: float
     stature_error: float = 0.01
-    """How far the person's lengths may add up to another (sigma of its logarithm)."""
+    """Standard deviation of the logarithm of the sum of the person's lengths."""
 
 
 class ClipEvidence(NamedTuple):
-    """Of one clip."""
+    """Observations of one clip."""
 
     first: JointTrack
-    """At the moments that are looked at."""
+    """View 1 at the moments used."""
     second: JointTrack
-    """All of it: it may be late."""
+    """All of view 2: it may be late."""
     units_px: tuple[float, float]
-    """How high the person is in each view, typically."""
+    """Typical height of the person in each view, pixels."""
 
 
 class Evidence(NamedTuple):
-    """All that a rig is fitted to."""
+    """All data of a rig's fit."""
 
     clips: tuple[ClipEvidence, ...]
     size_px: tuple[int, int]
     known: Known
     worth: float
-    """As how many moments whose landmarks err by themselves all together count."""
+    """Number of moments with independent landmark errors that all clips together count for."""
 
     @property
     def moments(self) -> int:
-        """How many there are."""
+        """Number of moments."""
         return sum(len(clip.first.times_s) for clip in self.clips)
 
     @property
     def own_share(self) -> float:
-        """Share of all landmarks that err by themselves."""
+        """Share of the landmarks whose errors are independent."""
         return min(1.0, self.worth / max(self.moments, 1))
 
     def thinned(self, most: int) -> "Evidence":
-        """The same of fewer moments."""
+        """The same data with fewer moments."""
         step = max(1, self.moments // most)
         return self._replace(
             clips=tuple(
@@ -90,7 +91,7 @@ class Evidence(NamedTuple):
 
 
 def gathered(sightings: tuple[Sighting, ...], known: Known) -> Evidence:
-    """What both views saw, made ready for the fit."""
+    """Both views' observations, prepared for the fit."""
     clips = []
     for one, late_s in zip(sightings, known.mean[LATE:], strict=True):
         smooth = one._replace(first=smoothed(one.first), second=smoothed(one.second))
@@ -105,21 +106,21 @@ def gathered(sightings: tuple[Sighting, ...], known: Known) -> Evidence:
 
 
 def own_moments(clip: ClipEvidence) -> float:
-    """In how many moments of a clip landmarks err anew, habits left out."""
+    """Number of moments of a clip with new landmark errors, systematic ones left out."""
     at_s = clip.first.times_s
     return min(float(len(at_s)), INDEPENDENT_HZ * float(np.ptp(at_s))) if len(at_s) else 0.0
 
 
 def sigma_px(track: JointTrack, unit_px: float) -> NDArray[np.float64]:
-    """(n, 15) how far landmarks err along each axis of the picture, by their confidence and how
-    high the person is in it; inf for unsure ones."""
+    """(n, 15) standard deviation of landmarks along each axis of the picture, from their
+    confidence and the person's height in it; inf for unsure ones."""
     sure = np.clip(track.confidence, 1e-6, 0.98)
     spread = CLOSE * unit_px / np.sqrt(-2.0 * np.log1p(-sure))
     return np.where(track.confidence >= LEAST_SURE, spread, np.inf)
 
 
 def exchanged(track: JointTrack, sides: Sides) -> JointTrack:
-    """The track with the sides of parts the other way round."""
+    """The track with the sides of some parts exchanged."""
     other = np.where(sides[:, prior.PART_OF_JOINT], OTHER_SIDE, np.arange(len(OTHER_SIDE)))
     rows = np.arange(len(other))[:, None]
     return track._replace(

@@ -1,4 +1,4 @@
-"""The rig, the person's lengths and the latenesses that explain best what both views saw."""
+"""The rig, the person's lengths and the delays that explain both views best."""
 
 from typing import Final, NamedTuple
 
@@ -14,25 +14,25 @@ from calibration.tracks.sight_lines import Numbers
 from common.body.body import Vector
 
 EXCHANGE_COST: Final = 0.5
-"""By how much (log likelihood) exchanged sides must explain a part better."""
+"""Log likelihood that exchanged sides must gain for a part."""
 
 NEAR_FRAMES: Final = np.arange(-3, 4) / 4
 """Steps from a clock to better ones, frames. Landmarks err less between frames than at them, so
-what is made small has a hump at each whole frame that a fit does not cross by itself."""
+the objective has a local maximum at each whole frame, which a fit does not cross by itself."""
 
 
 ANYWHERE: Final = 10.0
-"""Sigmas from what is believed of a clock at which better ones are looked for."""
+"""Range around the prior clock, sigmas, in which better ones are searched."""
 
 
 class Fit(NamedTuple):
-    """What was found."""
+    """The result of a fit."""
 
     guess: Vector
     cost: float
     sides: tuple[Sides, ...]
     jacobian: Numbers
-    """(misfits, free)"""
+    """(residuals, free) Jacobian."""
 
 
 def fitted(start: Vector, evidence: Evidence, free: Sides, rounds: int, steps: int) -> Fit:
@@ -40,10 +40,10 @@ def fitted(start: Vector, evidence: Evidence, free: Sides, rounds: int, steps: i
 
     Args:
         start: A guess.
-        evidence: What it is held against.
-        free: (guess,) which of its numbers may change.
-        rounds: How often it is asked which view has exchanged sides.
-        steps: Of the fit in each round.
+        evidence: The data.
+        free: (guess,) which numbers may change.
+        rounds: How often the exchanged sides are decided again.
+        steps: Iterations of the fit in each round.
     """
     guess = start.copy()
 
@@ -67,7 +67,7 @@ def fitted(start: Vector, evidence: Evidence, free: Sides, rounds: int, steps: i
 
 
 def on_time(guess: Vector, evidence: Evidence) -> Vector:
-    """The guess with view 2 of each clip as late as lets its sight lines meet best."""
+    """The guess with the delay of view 2 in each clip that makes its sight lines meet best."""
     found = guess.copy()
     for n, clip in enumerate(evidence.clips):
         period_s = float(np.median(np.diff(clip.second.times_s)))
@@ -87,14 +87,14 @@ def on_time(guess: Vector, evidence: Evidence) -> Vector:
 
 
 def _apart(guess: Vector, evidence: Evidence, number: int) -> float:
-    """How badly a clip is explained, each part with its sides as they fit better."""
+    """Cost of a clip, each part with its sides as they fit better."""
     whole = [np.full((len(evidence.clips[number].first.times_s), 3), other) for other in (0, 1)]
     both = [explained(guess, evidence, number, sides.astype(bool)) for sides in whole]
     return float(np.minimum(*(_costs(one) for one in both)).sum())
 
 
 def sides_of(guess: Vector, evidence: Evidence) -> tuple[Sides, ...]:
-    """Of each clip, where one view must have the sides of a part the other way round."""
+    """For each clip, the moments at which one view's sides of a part must be exchanged."""
     found = []
     for n, clip in enumerate(evidence.clips):
         costs = []
@@ -106,7 +106,7 @@ def sides_of(guess: Vector, evidence: Evidence) -> tuple[Sides, ...]:
 
 
 def _costs(one: Explained) -> NDArray[np.float64]:
-    """(n, 3) how badly each part is explained."""
+    """(n, 3) cost of each part."""
     unseen = np.log1p(UNSEEN**2 / 2)
     gaps = np.where(one.used, np.where(one.met.before, np.log1p(one.met.gap**2 / 2), 5.0), unseen)
     lengths = np.where(one.lengths_used, np.log1p(one.lengths**2 / 2), unseen)

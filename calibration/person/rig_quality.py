@@ -1,4 +1,4 @@
-"""A calibration by a person, and how good it is."""
+"""A calibration by a person, and its quality."""
 
 from typing import NamedTuple
 
@@ -9,7 +9,7 @@ from common.rig.camera import Rig
 
 
 class CameraQuality(msgspec.Struct, frozen=True):
-    """What is known of one camera, and how well (one sigma)."""
+    """One camera's numbers and their standard deviations."""
 
     name: str
     focal_px: float
@@ -17,33 +17,33 @@ class CameraQuality(msgspec.Struct, frozen=True):
     position_m: tuple[float, float, float]
     position_error_m: tuple[float, float, float]
     turn_error_deg: tuple[float, float, float]
-    """Of yaw, pitch and roll; camera 1 has no yaw, for it says where z is."""
+    """Yaw, pitch and roll; camera 1 has no yaw, because it defines z."""
 
 
 class Quality(msgspec.Struct, frozen=True):
-    """How good a calibration by a person is."""
+    """Quality of a calibration by a person."""
 
     cameras: tuple[CameraQuality, ...]
     stature_m: float
-    """All lengths are right to the share that this is."""
+    """Stature used, metres: all lengths have its relative error."""
     moments: int
-    """In how many both views saw the person."""
+    """Number of moments in which both views saw the person."""
     gap_mm: float
-    """By how much both views' sight lines of one joint miss each other, half of the time."""
+    """Median distance between the two sight lines of one joint."""
     gap_px: float
     late_frames: tuple[float, ...]
-    """By how many frames view 2 is late in each clip."""
+    """Delay of view 2 in each clip, frames."""
     late_error_frames: tuple[float, ...]
     unsure: tuple[str, ...] = ()
-    """What is not known well enough to be relied on; empty where all is."""
+    """Numbers that are too uncertain to be relied on; empty where there are none."""
 
 
 class PersonCalibration(NamedTuple):
-    """Two cameras, by the person who moved before them."""
+    """Two cameras, calibrated by the person who moved before them."""
 
     rig: Rig
     late_s: tuple[float, ...]
-    """How late view 2 is in each clip."""
+    """Delay of view 2 in each clip."""
     clocks: tuple[Clock, ...]
-    """Whether that is known."""
+    """Whether each delay is known."""
     quality: Quality

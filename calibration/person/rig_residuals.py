@@ -1,4 +1,4 @@
-"""How badly a rig explains what both views saw, in sigmas: what the fit makes small."""
+"""Residuals of a rig against both views' observations, in sigmas: the objective of the fit."""
 
 import math
 from typing import Final, NamedTuple
@@ -20,53 +20,54 @@ from calibration.tracks.sight_lines import Meeting, Numbers, directions, meeting
 from common.body.body import Vector
 
 LENGTH_ERROR: Final = 0.012
-"""What a segment's ends move about in the body, statures: landmarks are no bones."""
+"""Standard deviation of a segment's ends in the body, statures: landmarks are no bones."""
 FACING_DEG: Final = 20.0
 UNSURE_FACING, SURE_FACING = 0.6, 0.85
-"""Front and back are mistaken for seconds by a network that is less sure than this."""
+"""Confidence of a facing below which the network mistakes front and back for seconds."""
 FEWEST_FACINGS: Final = 12
 UPRIGHT_DEG, ALL_WAYS = 1.5, 0.15
-"""How far people lean who stand, and what share of it is left where they have faced all ways: a
-lean turns with whose it is (synthetic rigs, seeds from 1000 on)."""
+"""Standard deviation of a standing person's lean, and its remainder where they have faced all
+ways: a lean turns with the person (synthetic rigs, seeds from 1000 on)."""
 TALL_SHARE: Final = 0.93
-"""Whose neck is at least so far from the ankles, of the most that it is, stands upright."""
+"""Distance of the neck from the ankles, as a share of its maximum, from which on a person stands
+upright."""
 FLOOR_M: Final = 0.02
 ON_THE_RIGHT, SIDE_EDGE = 2.45, 0.2
-"""Sigmas against a camera 2 to the right of camera 1, and how abruptly: far away, mirror images are
-distinguished by the facing alone, and where that is unsure the paper's rig has it on the left
-(C1)."""
+"""Sigmas against a camera 2 to the right of camera 1, and the slope of that step: far away,
+mirror images differ in the facing alone, and where that is unsure the paper's rig has camera 2
+on the left (C1)."""
 FOCALS_ALIKE: Final = 0.3
-"""How far the focal lengths of both cameras differ, mostly (of their logarithm)."""
+"""Standard deviation of the logarithm of both focal lengths' ratio."""
 FLOOR_FRAMES, FACING_FRAMES = 6.0, 8.0
-"""For so many independent ones all lowest feet, and all facings, of a clip count."""
+"""Number of independent moments that all lowest feet, and all facings, of a clip count for."""
 UNSEEN: Final = 1.0
-"""Sigmas of what one view does not show: no clock is right because then less is seen."""
+"""Residual, sigmas, of what one view does not show: a clock must not win because less is seen."""
 BEHIND: Final = 10.0
-"""Sigmas by which a landmark misses that lies behind a camera."""
+"""Residual, sigmas, of a landmark behind a camera."""
 
 
 class Explained(NamedTuple):
-    """What a rig makes of one clip."""
+    """One clip under a rig."""
 
     met: Meeting
-    """(n, 15)"""
+    """(n, 15) places."""
     used: NDArray[np.bool_]
-    """(n, 15)"""
+    """(n, 15) residuals."""
     lengths: Numbers
-    """(n, 12) misfit of the segments, sigmas."""
+    """(n, 12) residuals of the segments, sigmas."""
     lengths_used: NDArray[np.bool_]
     second: JointTrack
     """View 2 at the same times, sides exchanged."""
 
 
 def softened(residual: Numbers) -> Numbers:
-    """Residuals whose squares are Cauchy's loss: what is far off says that it is wrong, no more."""
+    """Residuals whose squares are Cauchy's loss: an outlier's influence is bounded."""
     soft: Numbers = np.sign(residual) * np.sqrt(2.0 * np.log1p(residual**2 / 2.0))
     return soft
 
 
 def misfits(guess: Vector, evidence: Evidence, sides: tuple[Sides, ...]) -> Vector:
-    """All that is made small: what is believed, and what each clip shows."""
+    """All residuals: the priors, and each clip's observations."""
     rows = prior_misfits(guess, evidence.known)
     for n, clip in enumerate(evidence.clips):
         one = explained(guess, evidence, n, sides[n])
@@ -77,7 +78,7 @@ def misfits(guess: Vector, evidence: Evidence, sides: tuple[Sides, ...]) -> Vect
 
 
 def explained(guess: Vector, evidence: Evidence, number: int, sides: Sides) -> Explained:
-    """Points, and how well segments keep their lengths, of one of the clips."""
+    """The points and the segments' residuals of one clip."""
     clip = evidence.clips[number]
     cameras, middle_px = pinholes(guess), np.array(evidence.size_px) / 2
     times_s = clip.first.times_s + float(guess[LATE + number])
@@ -107,11 +108,11 @@ def _length_misfits(met: Meeting, lengths_m: Vector) -> Numbers:
 
 
 def data_misfits(one: Explained, own: float) -> list[Vector]:
-    """What landmarks say: lines that miss each other, segments of another length.
+    """Residuals of landmarks: sight lines that miss each other, segments of another length.
 
     Args:
-        one: What a rig makes of a clip.
-        own: Share of the landmarks that err by themselves.
+        one: A clip under a rig.
+        own: Share of the landmarks whose errors are independent.
     """
     gaps = np.where(one.met.before, one.met.gap, BEHIND)
     share = math.sqrt(own)
@@ -122,7 +123,7 @@ def data_misfits(one: Explained, own: float) -> list[Vector]:
 
 
 def standing_misfits(one: Explained, stature_m: float) -> list[Vector]:
-    """The floor under the lower foot, and the vertical along who stands upright."""
+    """Residuals of the floor under the lower foot, and of the vertical along an upright person."""
     points, used = one.met.points_m, one.used & one.met.before
     height = np.where(used[:, prior.ANKLES], points[:, prior.ANKLES, 1], np.inf).min(axis=1)
     seen = np.isfinite(height)
@@ -140,7 +141,7 @@ def standing_misfits(one: Explained, stature_m: float) -> list[Vector]:
 
 
 def _one_way(points_m: Numbers, used: NDArray[np.bool_]) -> float:
-    """How much the person (n, 15, 3) faces the same way all the time, in [0, 1]."""
+    """How constantly the person (n, 15, 3) faces one way, in [0, 1]."""
     seen = used[:, prior.SHOULDERS].all(axis=1)
     if not seen.any():
         return 1.0
@@ -151,7 +152,7 @@ def _one_way(points_m: Numbers, used: NDArray[np.bool_]) -> float:
 
 
 def facing_misfits(guess: Vector, one: Explained, first: JointTrack) -> Vector:
-    """(n,) how far both views disagree which way in the world the person faces."""
+    """(n,) difference between the views' headings of the person."""
     turned, sure = _turned(guess, one, first)
     sure = np.clip((sure - UNSURE_FACING) / (SURE_FACING - UNSURE_FACING), 0.0, 1.0) ** 2
     off = 2.0 * np.sin(turned / 2.0) / math.radians(FACING_DEG)
@@ -161,14 +162,14 @@ def facing_misfits(guess: Vector, one: Explained, first: JointTrack) -> Vector:
 
 
 def facing_off_deg(guess: Vector, one: Explained, first: JointTrack) -> float:
-    """The same in degrees, in [0, 180], half of the time; 0 where views are seldom sure."""
+    """Their median in degrees, in [0, 180]; 0 where views are seldom sure."""
     turned, sure = _turned(guess, one, first)
     off = np.degrees(np.abs(np.angle(np.exp(1j * turned[sure > SURE_FACING]))))
     return float(np.median(off)) if len(off) >= FEWEST_FACINGS else 0.0
 
 
 def _turned(guess: Vector, one: Explained, first: JointTrack) -> tuple[Vector, Vector]:
-    """(n,) by how much view 1 has the person turned against view 2, and how sure both are."""
+    """(n,) facing in view 1 minus facing in view 2, and the confidence of both."""
     place = one.met.points_m[:, prior.PELVIS]
     turned = np.zeros(len(place))
     for sign, camera, track in zip((1, -1), pinholes(guess), (first, one.second), strict=True):
@@ -178,7 +179,7 @@ def _turned(guess: Vector, one: Explained, first: JointTrack) -> tuple[Vector, V
 
 
 def prior_misfits(guess: Vector, known: Known) -> list[Vector]:
-    """What is believed of any rig and any person."""
+    """Residuals of the priors on rig and person."""
     believed = np.isfinite(known.sigma)
     off = (guess[believed] - known.mean[believed]) / known.sigma[believed]
     focals = (guess - known.mean)[FOCALS]

@@ -1,4 +1,4 @@
-"""Where a fit may begin: cameras that are level, around a person of a known height."""
+"""Starts of the fit: level cameras around a person of known height."""
 
 import math
 from typing import Final
@@ -14,30 +14,30 @@ from calibration.tracks.sight_lines import Numbers
 from common.body.body import Vector
 
 FOCAL_SHARE: Final = 1.1
-"""Focal length over the picture's width: a lens of 49 degrees; telephones see wider, room cameras
-less wide."""
+"""Focal length over picture width: a lens of 49 degrees; telephones see wider, room cameras
+narrower."""
 FOCAL_SPREAD: Final = 0.3
 STATED_SPREAD: Final = 0.02
-"""How far focal lengths are from that, mostly (of their logarithm), and from a stated one."""
+"""Standard deviation of the focal lengths' logarithm about that, and about a stated one."""
 LEVEL_DEG: Final = {"pitch": 6.0, "roll": 2.5}
-"""How far cameras on stands are from level, mostly."""
+"""Standard deviation of the pitch and roll of cameras on stands."""
 HEIGHT_M: Final = (1.2, 0.6)
 LATE_S: Final = 0.1
 FOUND_S: Final = 0.03
-"""How far a view is from on time, mostly, and from a clock that was found."""
+"""Standard deviation of a view's delay about 0, and about a clock that was found."""
 YAWS_DEG: Final = tuple(range(-165, 180, 30))
 MIDDLE_SHARE: Final = 0.65
-"""Height of the middle between pelvis and neck, in statures."""
+"""Height of the middle between pelvis and neck, statures."""
 
 
 def known_of(width_px: int, stature_m: float, clips: int, fov_deg: float | None = None) -> Known:
-    """What is believed of a rig before a person is seen.
+    """The prior on a rig before any observation.
 
     Args:
-        width_px: Of the pictures.
-        stature_m: Of the person.
-        clips: How many there are.
-        fov_deg: How wide the cameras see, where that is stated.
+        width_px: Width of the pictures.
+        stature_m: The person's stature.
+        clips: Number of clips.
+        fov_deg: Field of view of the cameras, where it is stated.
     """
     share = FOCAL_SHARE if fov_deg is None else 0.5 / math.tan(math.radians(fov_deg) / 2)
     focal = (math.log(share * width_px), FOCAL_SPREAD if fov_deg is None else STATED_SPREAD)
@@ -55,7 +55,7 @@ def known_of(width_px: int, stature_m: float, clips: int, fov_deg: float | None 
 
 
 def with_clocks(known: Known, clocks: tuple[Clock, ...]) -> Known:
-    """What is believed where the clocks of view 2 are known too."""
+    """The prior where the clocks of view 2 are known too."""
     mean, sigma = known.mean.copy(), known.sigma.copy()
     for n, clock in enumerate(clocks):
         if clock.is_found:
@@ -64,11 +64,12 @@ def with_clocks(known: Known, clocks: tuple[Clock, ...]) -> Known:
 
 
 def level_starts(evidence: Evidence, late_s: Vector) -> list[Vector]:
-    """A guess for each yaw: cameras without pitch and roll, about where they see the person.
+    """A guess for each yaw: cameras without pitch and roll, at about the right distance from the
+    person.
 
     Args:
-        evidence: What is seen.
-        late_s: By how much view 2 is late in each clip.
+        evidence: The observations.
+        late_s: Delay of view 2 in each clip.
     """
     clip, known = evidence.clips[0], evidence.known
     tracks = (clip.first, at_times(clip.second, clip.first.times_s + late_s[0]))
@@ -82,7 +83,7 @@ def level_starts(evidence: Evidence, late_s: Vector) -> list[Vector]:
 
 
 def _around(yaw: float, places: list[Numbers], known: Known, late_s: Vector) -> Vector:
-    """Cameras that have the person at these places of their own, (3,) each, metres."""
+    """Cameras that have the person at these places in their own axes, (3,) each, metres."""
     guess = known.mean.copy()
     one, other = (rotation(turn, 0.0, 0.0) for turn in (0.0, yaw))
     first_m, second_m = places[0] @ one, places[1] @ other

@@ -1,4 +1,4 @@
-"""Where the world begins in which a rig without marks is given."""
+"""The world's origin and axes for a rig without marks."""
 
 from typing import Final
 
@@ -9,22 +9,23 @@ from common.body.body import Vector
 from common.rig.camera import Rig
 
 NEAR_M: Final = 1.5
-"""Lines of sight that cross farther from the person mean nothing by it."""
+"""Distance from the person, metres, beyond which the crossing of the lines of sight is
+meaningless."""
 PARALLEL: Final = 0.1
-"""Sine of the angle between lines of sight that cross nowhere certain."""
+"""Sine of the angle between lines of sight below which their crossing is uncertain."""
 
 
 def published_rig(guess: Vector, size_px: tuple[int, int], person_m: Vector) -> Rig:
     """The rig of a guess in its own world: x to the right in camera 1, y up from the floor, z
     towards camera 1, and the origin on the floor where both lines of sight cross.
 
-    The paper's rig is given so (C1), and every clip of one rig then has the same world. Where they
-    cross far from the person, or nowhere, the origin is under the person.
+    The paper's rig is defined so (C1), and every clip of one rig then has the same world. Where the
+    lines cross far from the person, or nowhere, the origin is under the person.
 
     Args:
-        guess: Of `rig_guess.py`: its world has these axes already.
-        size_px: Of the pictures.
-        person_m: Where the person was at first, (3,) in the world of the guess.
+        guess: A vector of `rig_guess.py`: its world has these axes already.
+        size_px: Width and height of the pictures.
+        person_m: First place of the person, (3,) in the world of the guess.
     """
     return rig_of(pinholes(guess), size_px, origin_of(pinholes(guess), person_m))
 

@@ -1,1 +1,1 @@
-"""What views show of the joints over time: tracks, sight lines, and by how much one is late."""
+"""The joints in both views over time: tracks, sight lines, and the delay between views."""

@@ -1,4 +1,4 @@
-"""What both views saw of one person over time, as arrays."""
+"""Both views of one person over time, as arrays."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -14,14 +14,14 @@ from common.bus.messages import View
 JOINTS: Final = len(JOINT_NAMES)
 _PELVIS, _NECK = (JOINT_NAMES.index(name) for name in ("pelvis", "neck"))
 LEAST_SURE: Final = 0.4
-"""A view whose landmarks are less sure on average does not count in a frame."""
+"""Mean confidence of a view's landmarks below which a frame does not count."""
 MOST_FRAMES, LONGEST = 80, 360
-"""As many of a clip are enough, for neighbours err alike; and of one that lasts long."""
+"""Number of moments used per clip, as neighbours err alike; and for a long clip."""
 UPRIGHT: Final = math.cos(math.radians(60.0))
-"""Cosine of the lean of a trunk in the picture from which a frame does not count for a rig: who
-lies has no soles on the floor, and is seen less well."""
+"""Cosine of the trunk's lean in the picture from which on a frame does not count for a rig: a
+lying person has no soles on the floor, and is detected less well."""
 ENOUGH_HZ: Final = 2.5
-"""As many a second are looked at in a long clip."""
+"""Moments a second that are used in a long clip."""
 
 
 class JointTrack(NamedTuple):
@@ -34,9 +34,9 @@ class JointTrack(NamedTuple):
     confidence: NDArray[np.float64]
     """(n, 15) in [0, 1]; 0 where no person is seen."""
     facing_deg: Vector
-    """(n,) towards the camera 0, to the right of its picture 90."""
+    """(n,) facing: 0 towards the camera, 90 to the right of its picture, degrees."""
     facing_confidence: Vector
-    """(n,)"""
+    """(n,) confidence of the facing."""
 
 
 class Sighting(NamedTuple):
@@ -49,17 +49,17 @@ class Sighting(NamedTuple):
 
 
 Row = tuple[float, Vector, Vector, float, float]
-"""Of one frame, what a JointTrack has of each."""
+"""One frame: the fields of a JointTrack."""
 
 
 def track_of(views: Iterable[View]) -> JointTrack:
-    """The landmarks that one viewer reports; what is cut off, not seen or of who lies down has
+    """The landmarks of one viewer's report; those cut off, not seen, or of a lying person have
     confidence 0."""
     return track_of_rows([row_of(view) for view in views])
 
 
 def track_of_rows(rows: Sequence[Row]) -> JointTrack:
-    """The same of what was kept of them."""
+    """The same for stored observations."""
     times, joints, confidence, facing, sure = zip(*rows, strict=True) if rows else ([],) * 5
     return JointTrack(
         np.array(times, float),
@@ -71,7 +71,7 @@ def track_of_rows(rows: Sequence[Row]) -> JointTrack:
 
 
 def row_of(view: View) -> Row:
-    """What is kept of a view."""
+    """The stored part of a view."""
     seen = None if view.person is None else view.person.landmarks
     if seen is None or not is_upright(seen):
         return view.captured_s, np.zeros((JOINTS, 2)), np.zeros(JOINTS), 0.0, 0.0
@@ -88,11 +88,11 @@ def is_upright(seen: Landmarks) -> bool:
 
 
 def useful_times(sighting: Sighting, late_s: float) -> Vector:
-    """(n,) Moments of the first view at which both are sure of a person, evenly thinned.
+    """(n,) moments of the first view at which both are sure of a person, evenly thinned.
 
     Args:
         sighting: Both views.
-        late_s: How late view 2 is believed to be.
+        late_s: Assumed delay of view 2.
     """
     sure = sighting.first.confidence.mean(axis=1) >= LEAST_SURE
     at = sighting.first.times_s
@@ -108,7 +108,7 @@ def useful_times(sighting: Sighting, late_s: float) -> Vector:
 
 
 def at_times(track: JointTrack, times_s: Vector) -> JointTrack:
-    """The track between its frames, linearly; as sure as the less sure neighbour."""
+    """The track between its frames, linearly; the lower of the two confidences is kept."""
     last = len(track.times_s) - 1
     after = np.clip(np.searchsorted(track.times_s, times_s), 1, max(last, 1))
     before = after - 1
@@ -129,10 +129,10 @@ def at_times(track: JointTrack, times_s: Vector) -> JointTrack:
 
 
 def smoothed(track: JointTrack) -> JointTrack:
-    """The track with each landmark weighed with its neighbours in time, 1 : 2 : 1.
+    """The track with each landmark smoothed over time, 1 : 2 : 1.
 
-    A landmark between two frames would otherwise err less than one at a frame, and views that
-    are half a frame apart would seem to agree best.
+    Without smoothing a landmark between two frames has a smaller error than one at a frame, and
+    views that are half a frame apart would seem to agree best.
     """
     weight = track.confidence[..., None]
     padded = np.pad(weight, ((1, 1), (0, 0), (0, 0)))
@@ -143,8 +143,7 @@ def smoothed(track: JointTrack) -> JointTrack:
 
 
 def height_px(track: JointTrack) -> float:
-    """How high the crown stands above the ankles in most frames, pixels; 0 where no person is
-    seen."""
+    """Typical height of the crown above the ankles, pixels; 0 where no person is seen."""
     ankles = [JOINT_NAMES.index("l_ankle"), JOINT_NAMES.index("r_ankle")]
     crown = track.joints_px[:, JOINT_NAMES.index("head_top")]
     tall = np.linalg.norm(crown - track.joints_px[:, ankles].mean(axis=1), axis=-1)

@@ -1,4 +1,4 @@
-"""What one lateness makes of what both views show: a relation, and how far landmarks miss it."""
+"""One delay's fit to both views: a relation, and how far landmarks miss it."""
 
 from typing import Final, NamedTuple
 
@@ -14,38 +14,38 @@ from common.body.body import OTHER_SIDE, Vector
 LEAST_SHARED: Final = 12
 """Fewest moments that both views must share: fewer fit any relation."""
 ERR: Final = 0.022
-"""By what landmarks miss the relation, heights of the person."""
+"""Standard deviation of landmarks about the relation, heights of the person."""
 SURE: Final = 0.12
-"""Landmarks less sure than this are left out."""
+"""Confidence below which landmarks are left out."""
 EXCHANGE_COST: Final = 0.5
-"""By how much exchanged sides must explain a part better."""
+"""Log likelihood that exchanged sides must gain for a part."""
 ROUNDS: Final = 3
-"""In each it is asked anew whose sides are exchanged, and what is far off weighs less."""
+"""Number of rounds: each decides the exchanged sides again and weighs outliers less."""
 _IN_PART: Final = np.eye(3)[prior.PART_OF_JOINT]
 
 
 class Fit(NamedTuple):
-    """What a lateness makes of the moments."""
+    """The moments under one delay."""
 
     late_s: float
     costs: Vector
-    """(moments,) how far landmarks miss the relation that fits best; 0 where not both show any."""
+    """(moments,) squared misses of the best relation; 0 where not both show the person."""
     weights: Vector
-    """(moments,) of these landmarks."""
+    """(moments,) weights of these landmarks."""
 
     @property
     def miss(self) -> float:
-        """Of a landmark, on average."""
+        """Mean miss of a landmark."""
         return float(self.costs.sum() / self.weights.sum())
 
     @property
     def moments(self) -> int:
-        """That both views have."""
+        """Number of moments that both views have."""
         return int(np.count_nonzero(self.weights))
 
 
 class _Paired(NamedTuple):
-    """What both views show at the moments that they have in common."""
+    """Both views at the moments that they have in common."""
 
     terms: Numbers
     """(2, n, 15, 8): sides as they are, and exchanged in view 2."""
@@ -56,7 +56,7 @@ class _Paired(NamedTuple):
 def _paired(
     first: JointTrack, second: JointTrack, late_s: float
 ) -> tuple[NDArray[np.bool_], _Paired]:
-    """Which moments both views have, and what they show there."""
+    """The moments that both views have, and their contents."""
     there = at_times(second, first.times_s + late_s)
     both = there.confidence.mean(axis=1) >= LEAST_SURE
     places, sure = there.joints_px[both], there.confidence[both]
@@ -69,7 +69,7 @@ def _paired(
 
 
 def fits_of(views: tuple[JointTrack, JointTrack], tried: list[float]) -> list[Fit]:
-    """Of those latenesses that leave enough in common."""
+    """Fits of the delays that leave enough moments in common."""
     return [fit for late_s in tried if (fit := _fitted(*views, late_s))]
 
 
@@ -94,7 +94,7 @@ def _fitted(first: JointTrack, second: JointTrack, late_s: float) -> Fit | None:
 
 
 def _sides(costs: Numbers) -> NDArray[np.bool_]:
-    """(n, 15) whose sides are exchanged, by what landmarks cost either way (2, n, 15)."""
+    """(n, 15) whose sides are exchanged, by the landmarks' costs either way (2, n, 15)."""
     as_is, other = costs @ _IN_PART
     exchanged = (other + EXCHANGE_COST < as_is) & (np.arange(3) != prior.TRUNK)
     return exchanged[:, prior.PART_OF_JOINT]

@@ -1,9 +1,10 @@
-"""By how much view 2 is late, from what both views show of the person, whatever the cameras are.
+"""The delay of view 2, from both views of the person, whatever the cameras are.
 
-At one instant both views of a point are bound by one relation (`view_relation.py`).
-It is fitted for each lateness that leaves the clips enough in common; the one that explains most is
-the likeliest. By its relation it is asked which others explain what they pair nearly as well.
-In long clips it is fitted only where both views move alike (`moving_alike.py`), and here and there.
+At one instant both views of a point satisfy one relation (`view_relation.py`). It is fitted for
+each delay that leaves the clips enough in common; the delay that explains most is the likeliest.
+Its relation then tests which other delays explain their pairs nearly as well. In long clips the
+relation is fitted only where both views move alike (`moving_alike.py`), and at a few evenly spread
+delays.
 """
 
 from itertools import chain, pairwise
@@ -23,64 +24,65 @@ from calibration.tracks.late_fit import LEAST_SHARED, SURE, Fit, fits_of
 from calibration.tracks.moving_alike import promising
 
 MOMENTS: Final = 120
-"""Number of moments of view 1, evenly spread, that latenesses are fitted to."""
+"""Number of moments of view 1, evenly spread, that delays are fitted to."""
 STEP_S: Final = 0.07
-"""Distance between the latenesses of the first search, seconds; a frame, where that is longer."""
+"""Step of the first search, seconds; a frame, where that is longer."""
 MOST_TRIED: Final = 900
-"""Number of latenesses above which only the promising ones are fitted: both views last more than
+"""Number of delays above which only the promising ones are fitted: both views last more than
 half a minute."""
 NEAR_BEST_S: Final = 1.0
-"""Distance from the best of the promising latenesses, seconds, within which all are fitted too."""
+"""Distance from the best of the promising delays, seconds, within which all are fitted too."""
 FINE_FRAMES: Final = np.arange(-6, 7) / 4
-"""Offsets from the likeliest lateness, frames, that the last search fits."""
+"""Offsets from the likeliest delay, frames, that the last search fits."""
 SHARED_S: Final = 2.0
-"""Least time that both views must have in common, seconds, for a lateness to be reported."""
+"""Least time that both views must have in common, seconds, for a delay to be reported."""
 AS_GOOD, SURE_AS_GOOD = 1.2, 1.4
-"""Ratio of a lateness's misses to those of the likeliest, up to which it may be the right one:
-SURE_AS_GOOD where landmarks err much and it would change the times, AS_GOOD for the times as they
-are."""
+"""Ratio of a delay's misses to those of the likeliest, up to which it may be the right one:
+SURE_AS_GOOD where landmarks err much and the delay would change the times, AS_GOOD for the times
+as they are."""
 CLEAR: Final = 0.2
-"""Misses of the likeliest lateness up to which landmarks count as accurate: 0.06 to 0.15 in walks
+"""Misses of the likeliest delay up to which landmarks count as accurate: 0.06 to 0.15 in walks
 of two performers, 0.3 and more in synthetic ones (docs/measurements.md)."""
 AS_MUCH: Final = 1.0 / 3.0
-"""Least share of the moments that the likeliest lateness must explain for landmarks to count as
-accurate. Chosen with AS_GOOD and CLEAR on walks of two performers at offsets of -3 to 3 s, and on
-synthetic ones (docs/measurements.md)."""
+"""Least share of the moments that the likeliest delay must explain for landmarks to count as
+accurate. Chosen with AS_GOOD and CLEAR on walks of two performers at offsets of -3 to 3 s, and
+on synthetic ones (docs/measurements.md)."""
 ONE_S, WIDE_S = 0.25, 0.45
-"""Difference of two latenesses, seconds, below which they count as one, since no person steps
-faster; WIDE_S where all between them fit as well, because a slow walk shows time less exactly."""
+"""Difference of two delays, seconds, below which they count as one, since no person steps
+faster; WIDE_S where all between them fit as well, because a slow walk determines time less
+exactly."""
 LEAST_LATE: Final = 0.6
-"""Share of a frame by which view 2 must be late before its clock is set."""
+"""Smallest delay of view 2, frames, that is corrected."""
 
 
 class Clock(NamedTuple):
-    """How late view 2 is: what view 1 shows at t, view 2 shows at t + late_s of its own times."""
+    """Delay of view 2: what view 1 shows at t, view 2 shows at t + late_s of its own times."""
 
     late_s: float
-    """Likeliest."""
+    """The likeliest delay."""
     rivals_s: tuple[float, ...] | None = ()
-    """What explains as much: a gait repeats itself, and who stands shows no time. None: nothing is
-    known of it."""
+    """Other delays that explain as much: a gait repeats itself, and a standing person shows no
+    time. None: nothing is known."""
     may_be_on_time: bool = True
-    """Nothing speaks against the times as they are."""
+    """The times as they are remain possible."""
 
     @property
     def state(self) -> Literal["found", "ambiguous", "unknown"]:
-        """In a word: found, ambiguous, or that nothing is known."""
+        """The result in a word: found, ambiguous, or unknown."""
         return "unknown" if self.rivals_s is None else "ambiguous" if self.rivals_s else "found"
 
     @property
     def is_found(self) -> bool:
-        """No other lateness explains as much."""
+        """No other delay explains as much."""
         return self.rivals_s == ()
 
 
 UNSEEN: Final = Clock(0.0, None)
-"""Where both views show too little of a person."""
+"""The result where both views show too little of a person."""
 
 
 def clock_of(sighting: Sighting) -> Clock:
-    """How late view 2 is, as far as both views show it."""
+    """The delay of view 2, as far as both views determine it."""
     views = _prepared(sighting)
     runs = _searched(views, sighting) if views else []
     if not views or not runs:
@@ -103,7 +105,7 @@ def clock_of(sighting: Sighting) -> Clock:
 
 
 def _prepared(sighting: Sighting) -> tuple[JointTrack, JointTrack] | None:
-    """View 1 at the moments that are looked at, and view 2, in heights about their middles."""
+    """View 1 at the moments used, and view 2, in heights about their middles."""
     sure = np.flatnonzero(sighting.first.confidence.mean(axis=1) >= LEAST_SURE)
     if len(sure) < LEAST_SHARED or len(sighting.second.times_s) < LEAST_SHARED:
         return None
@@ -124,7 +126,7 @@ def _in_heights(track: JointTrack, unit_px: float) -> JointTrack:
 
 
 def _searched(views: tuple[JointTrack, JointTrack], sighting: Sighting) -> list[list[Fit]]:
-    """What is tried, each run of latenesses that are a step apart for itself."""
+    """The delays to try, in runs of equal steps."""
     step_s = max(STEP_S, float(np.median(np.diff(views[1].times_s))))
     steps = tried = _steps(*views, step_s)
     if len(steps) > MOST_TRIED:
@@ -143,7 +145,7 @@ def _searched(views: tuple[JointTrack, JointTrack], sighting: Sighting) -> list[
 
 
 def _steps(first: JointTrack, second: JointTrack, step_s: float) -> NDArray[np.int64]:
-    """All latenesses that may leave enough in common; 0 is among them."""
+    """All delays that may leave enough in common; 0 is among them."""
     low = int((second.times_s[0] - first.times_s[-1]) / step_s)
     high = int((second.times_s[-1] - first.times_s[0]) / step_s)
     return np.arange(low, high + 1)
@@ -155,7 +157,7 @@ def _likeliest(fits: list[Fit]) -> Fit:
 
 
 def _rivals(best: Fit, fits: list[Fit], as_good: float) -> tuple[float, ...]:
-    """One of each stretch of latenesses that are as good as the best, by what both pair."""
+    """One of each stretch of delays that are as good as the best, by their pairs."""
     ratios = np.array([_ratio(fit, best) for fit in fits])
     late_s = np.array([fit.late_s for fit in fits])
     enough = np.array([fit.moments >= AS_MUCH * best.moments for fit in fits])
@@ -169,7 +171,8 @@ def _rivals(best: Fit, fits: list[Fit], as_good: float) -> tuple[float, ...]:
 
 
 def _ratio(fit: Fit, best: Fit) -> float:
-    """How much more one misses than the best, at moments that both have where these are enough."""
+    """Ratio of one delay's misses to the best's, at moments that both have where these are
+    enough."""
     both = (fit.weights > 0) & (best.weights > 0)
     if both.sum() < LEAST_SHARED:
         return fit.miss / best.miss

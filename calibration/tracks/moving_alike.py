@@ -1,7 +1,7 @@
-"""The latenesses at which both views move alike: a cheap first look at long clips.
+"""Delays at which both views move alike: a fast first search of long clips.
 
-What both views show of a person who moves is correlated where they show one instant, whatever the
-cameras are. The Fourier transform gives that correlation at every lateness at the price of a few.
+Both views' motions of a person are correlated at the right delay, whatever the cameras are. The
+Fourier transform gives this correlation at every delay for the price of a few.
 """
 
 from typing import Final
@@ -14,21 +14,21 @@ from calibration.tracks.sight_lines import Numbers
 from common.body.body import Vector
 
 PEAKS: Final = 120
-"""Number of latenesses at which both views move most alike that are fitted. In synthetic walks of
-one to three minutes the true one is among the first 20, where a person moves at random among the
-first 110 (docs/measurements.md)."""
+"""Number of best-correlated delays that are fitted. In synthetic walks of one to three minutes
+the true one is among the first 20, where a person moves at random among the first 110
+(docs/measurements.md)."""
 AROUND: Final = np.arange(-1, 2)
-"""With their neighbours, and with 0 and its own."""
+"""Neighbours of each that are fitted too, as for 0 and the clip's own."""
 EVENLY: Final = 150
-"""Number of evenly spread latenesses that are fitted as well: they show what fits by chance."""
+"""Number of evenly spread delays that are fitted as well: they show what fits by chance."""
 LEAST_SHARE: Final = 0.1
-"""Of what view 1 shows view 2 must show so much, too: what fewer show is like anything."""
+"""Share of view 1's moments that view 2 must show too: few moments correlate with anything."""
 Steps = NDArray[np.int64]
-"""(n,) latenesses of view 2, in steps."""
+"""(n,) delays of view 2, in steps."""
 
 
 def promising(first: JointTrack, second: JointTrack, steps: Steps, step_s: float) -> Steps:
-    """Those of successive `steps` of so many seconds that are worth a fit, increasing."""
+    """The promising ones among successive `steps` of that many seconds, increasing."""
     scores = alike(first, second, steps, step_s)
     middle = scores[1:-1]
     peaks = 1 + np.flatnonzero((middle >= scores[:-2]) & (middle > scores[2:]))
@@ -39,10 +39,10 @@ def promising(first: JointTrack, second: JointTrack, steps: Steps, step_s: float
 
 
 def alike(first: JointTrack, second: JointTrack, steps: Steps, step_s: float) -> Vector:
-    """(n,) how surely both views move alike at each lateness (n,).
+    """(n,) how significantly both views move alike at each delay (n,).
 
-    It is the largest canonical correlation of a landmark's two coordinates in either view, about
-    its mean place, times the root of how many pairs it comes from; 0 where these are too few.
+    The largest canonical correlation of a landmark's two coordinates in either view, about its mean
+    place, times the square root of the number of pairs; 0 where these are too few.
     """
     (begin_1, one), (begin_2, other) = (_at_steps(track, step_s) for track in (first, second))
     length = 1 << (len(one) + len(other)).bit_length()
@@ -63,7 +63,7 @@ def alike(first: JointTrack, second: JointTrack, steps: Steps, step_s: float) ->
 
 
 def _at_steps(track: JointTrack, step_s: float) -> tuple[int, Numbers]:
-    """The first step; (n, 15, 3) places about a landmark's mean, weighed, and whether seen."""
+    """The first step; (n, 15, 3) places about a landmark's mean, weighted, and whether seen."""
     begin, end = (int(np.ceil(track.times_s[n] / step_s)) for n in (0, -1))
     shown = at_times(track, step_s * np.arange(begin, end, dtype=np.float64))
     weights = shown.confidence * (shown.confidence.mean(axis=1) >= LEAST_SURE)[:, None]
@@ -74,7 +74,7 @@ def _at_steps(track: JointTrack, step_s: float) -> tuple[int, Numbers]:
 
 
 def _whiten(view: Numbers) -> Numbers:
-    """(2, 2) by which both coordinates vary by 1 in all, and each for itself."""
+    """(2, 2) whitening matrix: both coordinates get variance 1 and no correlation."""
     flat = view[..., :2].reshape(-1, 2)
     spread = flat.T @ flat + 1e-9 * np.eye(2)
     root: Numbers = np.linalg.cholesky(np.linalg.inv(spread))

@@ -1,4 +1,4 @@
-"""What is known of any person before seeing them: shares of the stature, and how one stands."""
+"""Prior on any person: segment lengths as shares of the stature, and how a person stands."""
 
 from typing import Final
 
@@ -12,13 +12,13 @@ PELVIS, NECK = AT["pelvis"], AT["neck"]
 ANKLES: Final = [AT["l_ankle"], AT["r_ankle"]]
 SHOULDERS: Final = [AT["l_shoulder"], AT["r_shoulder"]]
 LENGTHS: Final = tuple(BONE_SHARES)
-"""What the body's lengths are called, in order."""
+"""Names of the body's lengths, in order."""
 SHARES: Final = np.array(list(BONE_SHARES.values()))
 SPREADS: Final = np.array([0.03, 0.05, 0.04, 0.06, 0.04, 0.04, 0.12, 0.2])
-"""How far people differ in each (sigma of its logarithm)."""
+"""Standard deviation of each length's logarithm among people."""
 
 TRUNK, ARMS, LEGS = 0, 1, 2
-"""Parts whose sides a view may exchange by themselves; the trunk has none."""
+"""Parts whose sides a view may exchange independently; the trunk has none."""
 _SEGMENTS: Final = (
     ("pelvis", "neck", 0, TRUNK),
     ("neck", "head_top", 1, TRUNK),
@@ -32,7 +32,7 @@ _SEGMENTS: Final = (
 ENDS: Final = np.array([[AT[a], AT[b]] for a, b, _, _ in _SEGMENTS])
 """(12, 2) the joints at both ends of each segment."""
 LENGTH_OF: Final = np.array([length for _, _, length, _ in _SEGMENTS])
-"""(12,) which of LENGTHS a segment has."""
+"""(12,) index in LENGTHS of each segment."""
 PART_OF_SEGMENT: Final = np.array([part for _, _, _, part in _SEGMENTS])
 PART_OF_JOINT: Final = np.array(
     [
@@ -46,8 +46,8 @@ PART_OF_JOINT: Final = np.array(
 )
 
 UPRIGHT: Final = np.array([1, 1, 0, 0, 1, 1, 0, 0], bool)
-"""The lengths that add up to the height of the crown above the ankles."""
+"""The lengths whose sum is the height of the crown above the ankles."""
 CROWN_SHARE: Final = 0.952
-"""What they add up to, in statures."""
+"""That sum, statures."""
 ANKLE_SHARE: Final = 0.050
-"""Height of a standing foot's ankle above the floor, in statures."""
+"""Height of a standing foot's ankle above the floor, statures."""

@@ -1,4 +1,4 @@
-"""A rig as a vector that can be fitted, and back."""
+"""A rig as a vector for the fit, and back."""
 
 import math
 from typing import Final, NamedTuple
@@ -15,23 +15,23 @@ NAMES: Final = (
     *("pitch_1", "roll_1", "height_1"),
     *("yaw_2", "pitch_2", "roll_2", "x_2", "height_2", "z_2"),
 )
-"""The numbers that a rig is given by. Camera 1 stands over the world's origin and has no yaw, so
-its sight goes towards -z; angles are radians, lengths metres. What is fitted besides follows in
-this order: the lengths of the person, then the lateness of view 2 in each clip, seconds."""
+"""The numbers of a rig's vector. Camera 1 is above the world's origin and has no yaw, so it
+looks towards -z; angles are radians, lengths metres. The vector continues with the lengths of
+the person, then the delay of view 2 in each clip, seconds."""
 PLACE: Final = {name: n for n, name in enumerate(NAMES)}
 FOCALS: Final = slice(0, 2)
 FARTHEST: Final = 20.0
-"""Logarithms of focal lengths in pixels go no farther where a step of the fit flies off, which is
-then taken back: e^20 is more than any camera has, and still a number that can be reckoned with."""
+"""Bound of the logarithm of a focal length in pixels: a step of the fit that diverges, and is
+then taken back, stays finite at e^20."""
 RIG: Final = len(NAMES)
 BODY: Final = slice(RIG, RIG + len(LENGTHS))
 """Logarithms of the person's lengths, metres."""
 LATE: Final = RIG + len(LENGTHS)
-"""Where the latenesses begin."""
+"""Index of the first delay."""
 
 
 class Pinhole(NamedTuple):
-    """One camera as the fit computes with it."""
+    """One camera in the form of the fit."""
 
     focal_px: float
     R: NDArray[np.float64]
@@ -50,15 +50,15 @@ def pinholes(guess: Vector) -> tuple[Pinhole, Pinhole]:
 
 
 def rotation(yaw: float, pitch: float, roll: float) -> NDArray[np.float64]:
-    """World to camera (3, 3): from a level sight towards -z turned to the left about the vertical
-    (yaw), then lifted (pitch), then turned clockwise about the line of sight (roll); radians."""
+    """World to camera (3, 3): from a level view towards -z turned to the left about the vertical
+    (yaw), then raised (pitch), then turned clockwise about the line of sight (roll); radians."""
     turned = np.array(PAPER_ROTATIONS[0]) @ _about(1, -yaw)
     level: NDArray[np.float64] = _about(2, -roll) @ _about(0, -pitch) @ turned
     return level
 
 
 def _about(axis: int, angle: float) -> NDArray[np.float64]:
-    """The rotation (3, 3) about a coordinate axis, by the right hand."""
+    """The rotation (3, 3) about a coordinate axis, right-handed."""
     cosine, sine = math.cos(angle), math.sin(angle)
     turn = np.eye(3)
     i, j = (axis + 1) % 3, (axis + 2) % 3
@@ -68,7 +68,7 @@ def _about(axis: int, angle: float) -> NDArray[np.float64]:
 
 
 def rig_of(cameras: tuple[Pinhole, Pinhole], size_px: tuple[int, int], origin_m: Vector) -> Rig:
-    """Two cameras as a rig whose world begins at a place of theirs, (3,)."""
+    """Two cameras as a rig whose world has its origin at a place in theirs, (3,)."""
     told = []
     for name, one in zip(("cam1", "cam2"), cameras, strict=True):
         K = np.diag([one.focal_px, one.focal_px, 1.0])

@@ -1,4 +1,4 @@
-"""Where the sight lines of both views pass each other, and how well that is known."""
+"""Triangulation from both views' sight lines, with its uncertainty."""
 
 from typing import Final, NamedTuple
 
@@ -11,11 +11,11 @@ from common.body.body import Vector
 Numbers = NDArray[np.float64]
 
 NEAREST_M: Final = 0.3
-"""No person is seen nearer to a camera."""
+"""Smallest distance of a person from a camera, metres."""
 
 NARROW: Final = 0.2
-"""Squared sine of the angle between rays below which depths are not called less certain: views
-that are nearly one would seem to agree about anything."""
+"""Squared sine of the angle between rays below which depth uncertainty is capped: nearly equal
+views would seem to agree about anything."""
 
 
 class Meeting(NamedTuple):
@@ -26,22 +26,22 @@ class Meeting(NamedTuple):
     axes: Numbers
     """(3, ..., 3) along the first ray, along the second, across both: unit vectors."""
     variances_m2: Numbers
-    """(3, ...) what is unknown of the place along each, as independent parts."""
+    """(3, ...) standard deviation of the place along each, independent."""
     gap: Numbers
-    """(...) by how many of its sigmas one line passes the other."""
+    """(...) signed gap between the lines, in sigmas."""
     gap_m: Numbers
     """(...) the same in metres."""
     before: NDArray[np.bool_]
-    """(...) whether the place is before both cameras."""
+    """(...) whether the place is in front of both cameras."""
 
     def variance_m2(self, toward: Numbers) -> Numbers:
-        """(...) of the places along unit vectors (..., 3)."""
+        """(...) variance of the places along unit vectors (..., 3)."""
         cosines = np.einsum("k...i,...i->k...", self.axes, toward)
         variance: Numbers = (self.variances_m2 * cosines**2).sum(axis=0)
         return variance
 
     def of_joints(self, joints: NDArray[np.intp]) -> "Meeting":
-        """The same of some joints, where the last axis counts joints."""
+        """The same for some joints, where the last axis counts joints."""
         return Meeting(
             self.points_m[:, joints],
             self.axes[:, :, joints],
@@ -53,7 +53,7 @@ class Meeting(NamedTuple):
 
 
 def directions(camera: Pinhole, middle_px: Vector, pixels: Numbers) -> Numbers:
-    """(..., 3) unit vectors in the world of what pixels (..., 2) show."""
+    """(..., 3) unit vectors in the world of the rays of pixels (..., 2)."""
     flat = (pixels - middle_px) / camera.focal_px
     rays = flat @ camera.R[:2] + camera.R[2]
     unit: Numbers = rays / np.sqrt((flat**2).sum(axis=-1) + 1.0)[..., None]
@@ -65,11 +65,11 @@ def meeting(
     rays: tuple[Numbers, Numbers],
     sigmas_px: tuple[Numbers, Numbers],
 ) -> Meeting:
-    """Triangulate points from their rays (..., 3) and how far each errs in its picture (...).
+    """Triangulate points from their rays (..., 3) and the errors in each picture (...).
 
-    In the plane of both rays each fixes what the other leaves open; across it both vote. What a
-    ray errs by in metres grows with the way to its camera: taken as so many metres anywhere,
-    errors miss by less in the world of too short a focal length, and that is then found.
+    In the plane of both rays each ray fixes what the other leaves free; across it both contribute.
+    A ray's error in metres grows with the distance to its camera: with a constant error in metres,
+    a world of too short a focal length would have smaller misses, and the fit would find it.
     """
     (one, other), (first, second) = cameras, rays
     base = other.centre_m - one.centre_m
@@ -96,7 +96,7 @@ def meeting(
 
 
 def _spread_m(camera: Pinhole, rays: Numbers, far_m: Numbers, sigma_px: Numbers) -> Numbers:
-    """(...) how far rays err across themselves, so far from the camera."""
+    """(...) error of rays across themselves, at that distance from the camera."""
     depth_m = np.maximum(far_m, NEAREST_M) * (rays @ camera.R[2])
     spread: Numbers = sigma_px / camera.focal_px * depth_m
     return spread

@@ -1,4 +1,4 @@
-"""The one relation that any two cameras which stand impose on what both see at one instant."""
+"""The relation between two static cameras' pictures of one point at one instant."""
 
 from typing import Final, NamedTuple
 
@@ -8,39 +8,38 @@ from numpy.typing import NDArray
 Numbers = NDArray[np.float64]
 
 LINEAR: Final = 4
-"""Of the terms, those that far cameras need: x and y in either view."""
+"""Indices of the terms that far cameras need: x and y in either view."""
 NEARLY_FAR: Final = 1e-4
-"""How dear the other terms are, which distinguish near from far: without a price they explain
-anything."""
+"""Penalty of the other terms, which tell near from far: without it they explain anything."""
 TRIED: Final = np.stack(
     np.meshgrid(*2 * [np.arange(-45.0, 46.0, 7.5)], np.arange(-0.3, 0.31, 0.1)), axis=-1
 ).reshape(-1, 3)
-"""Of directions in either picture from down, degrees, and of how much more view 1 counts than view
-2 (of its logarithm)."""
+"""Ranges of the search: directions in either picture from down, degrees, and the logarithm of
+view 1's weight over view 2's."""
 FINER: Final = (1.0, 1.0 / 6.0, 1.0 / 36.0)
-"""Steps of the searches around the best, one after the other, in those of the first search."""
+"""Steps of the successive searches around the best, in steps of the first."""
 
 
 class Relation(NamedTuple):
-    """What is 0 of a point that both views show."""
+    """A linear form that is 0 at every point that both views show."""
 
     weights: Numbers
-    """(8,) of the terms, less their `means`."""
+    """(8,) coefficients of the terms, less their `means`."""
     means: Numbers
     """(8,)"""
 
     def off(self, terms: Numbers) -> Numbers:
-        """(...) by how much points miss it, in the units of their places."""
+        """(...) misses of points, in the units of their places."""
         off: Numbers = (terms - self.means) @ self.weights
         return off
 
 
 def terms_of(one: Numbers, other: Numbers) -> Numbers:
-    """(..., 8) of points (..., 2) in both views, about the middle of what each shows.
+    """(..., 8) terms of points (..., 2) in both views, about the middle of each.
 
-    What two views show of a point is bound by a bilinear equation, whatever the cameras are: the
-    fundamental matrix's, each of whose terms but the constant is one of these.
-    Source: Hartley and Zisserman 2004, section 9.2.
+    Two views of a point satisfy a bilinear equation, whatever the cameras are: the fundamental
+    matrix's, whose terms, the constant aside, are these. Source: Hartley and Zisserman 2004,
+    section 9.2.
     """
     products = one[..., :, None] * other[..., None, :]
     flat = products.reshape(*products.shape[:-2], LINEAR)
@@ -48,11 +47,11 @@ def terms_of(one: Numbers, other: Numbers) -> Numbers:
 
 
 def relation_of(terms: Numbers, weights: Numbers) -> Relation:
-    """The relation that points (n, 8) miss least, weighed (n,).
+    """The relation that points (n, 8) miss least, weighted (n,).
 
-    Far cameras see a point equally high along a direction of each picture, where places are in
-    one unit. Were the views' shares free, a person who shows a line in one of them would explain
-    anything in the other; a little more or less is what near and far make of heights.
+    Far cameras see a point equally high along a direction of each picture, in one unit of length.
+    If the views' weights were free, a person who shows a line in one view would explain anything in
+    the other; perspective changes heights a little.
     """
     share = weights / weights.sum()
     means = share @ terms
@@ -76,7 +75,7 @@ def _least(spread: Numbers) -> Numbers:
 
 
 def _weights(tried: Numbers) -> Numbers:
-    """(n, 4) of directions, from down in either picture, and by how much view 1 counts more."""
+    """(n, 4) directions, from down in either picture, and view 1's weight."""
     turns, share = np.radians(tried[:, :2]), np.exp(tried[:, 2] / 2.0)
     across, down = np.sin(turns), np.cos(turns)
     ours, theirs = share[:, None], -1.0 / share[:, None]
