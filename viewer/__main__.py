@@ -36,20 +36,20 @@ from viewer.room.background_source import keep, opening_of_run
 from viewer.viewer_warmup import warm_up
 
 LAST_WORDS_S: Final = 1.0
-"""A link between hosts may be slow: how long a viewer stays when it has said that its clip is over.
-What it leaves unsent is lost, and the run would wait a minute for it."""
+"""How long a viewer stays after it reported the end of its clip, seconds: a link between hosts
+may be slow. An unsent report would be lost, and the run would wait a minute for it."""
 WAIT_SHARE: Final = 0.5
-"""How long a viewer waits for the guide of its last frame, in frame periods."""
+"""How long a viewer waits for the guide of its last frame, frame periods."""
 
 log = logging.getLogger(__name__)
 
 
 class StartError(RuntimeError):
-    """The run did not begin; the text says what was waited for."""
+    """The run did not begin; the text names the cause."""
 
 
 class Guides:
-    """The newest guide, and how often it came too late."""
+    """The newest guide, and the number of guides that came too late."""
 
     def __init__(self, inbox: Inbox[Guide], viewer: ViewerNumber) -> None:
         """Guides for this viewer."""
@@ -58,9 +58,10 @@ class Guides:
         self._inbox, self._viewer = inbox, viewer
 
     def of_frame(self, index: int, wait_s: float) -> Guide | None:
-        """The guide that has heard of this viewer's frame; else the newest, counted as a miss.
+        """The guide that takes this viewer's last frame into account; else the newest, counted as a
+        miss.
 
-        One of a rig that lacks this viewer's camera is none.
+        A guide of a rig without this viewer's camera is ignored.
         """
         until_s = time.monotonic() + wait_s
         while self.heard < index:
@@ -75,39 +76,39 @@ class Guides:
 
     @property
     def malformed(self) -> int:
-        """How many messages in a guide's place were none."""
+        """Number of malformed messages received as guides."""
         return self._inbox.malformed
 
     @property
     def foreign(self) -> int:
-        """How many guides were not of this run."""
+        """Number of guides from other runs."""
         return self._inbox.foreign
 
     @property
     def heard(self) -> int:
-        """The last frame of this viewer that a guide has heard of; -1: none."""
+        """The last frame of this viewer that a guide takes into account; -1: none."""
         return -1 if self.newest is None else self.newest.frames[self._viewer - 1]
 
 
 class Prepared(NamedTuple):
-    """All that a viewer is of, before its first frame."""
+    """What a viewer needs before its first frame."""
 
     view: ClipView
-    """Of its camera."""
+    """Its camera's view of the clip."""
     state: track.State
     warnings: tuple[str, ...] = ()
-    """What is odd about the view, told with every pulse, a line each."""
+    """Warnings about the view, sent with every pulse, one line each."""
     kept: Path | None = None
-    """The run's folder for what was learnt of a camera's background; None: it keeps nothing."""
+    """The run's folder for a learnt background; None: it is not kept."""
 
 
 def run(prepared: Prepared, live: Live, bus: Bus, stop: threading.Event) -> None:
-    """Look at every frame when it is due and publish what it shows, until the clip's end.
+    """Process every frame when it is due and publish its report, until the clip's end.
 
     Args:
         prepared: The viewer.
-        live: Gives the frames.
-        bus: Hears the reports.
+        live: Source of the frames.
+        bus: Receives the reports.
         stop: Ends it early.
     """
     view, state, warnings, _ = prepared
@@ -144,7 +145,7 @@ def run(prepared: Prepared, live: Live, bus: Bus, stop: threading.Event) -> None
     except (DecoderDied, Undecodable) as error:
         why = str(error)
         raise
-    finally:  # Also when the decoder broke: this view shall not be waited for again.
+    finally:  # Even when the decoder crashed: the run must not wait for this view again.
         bus.publish(Ended(viewer=view.number, frames=pace.frames, why=why))
     for odd in (shortfall(view, live.ending) if live.over else "", shedder.odd(pace.frames)):
         if odd:
@@ -154,7 +155,7 @@ def run(prepared: Prepared, live: Live, bus: Bus, stop: threading.Event) -> None
 
 
 def _before(background: Background, state: track.State, prepared: Prepared) -> track.State:
-    """The state before a background that was learnt now; a camera's is kept."""
+    """The state with a newly learnt background; a camera's is saved."""
     if prepared.kept is not None and isinstance(prepared.view.source, int):
         keep(prepared.kept, prepared.view, background)
     return track.with_background(state, background)
@@ -163,13 +164,13 @@ def _before(background: Background, state: track.State, prepared: Prepared) -> t
 def main(
     settings: Settings, viewer: ViewerNumber, context: ProcessContext = ProcessContext()
 ) -> None:
-    """Learn the background, wait for the others, look at the clip, close the doors in order.
+    """Learn the background, wait for the others, process the clip, close everything in order.
 
     Raises:
         ClipError: When the clip cannot be used.
         BusError: When the integrator does not answer.
-        DecoderDied: When the video broke the decoder.
-        StartError: When the other viewer never got ready.
+        DecoderDied: When the video crashed the decoder.
+        StartError: When the other viewer does not become ready.
         SettingsError: When the source of landmarks cannot be used.
     """
     name = f"viewer {viewer}"
@@ -190,7 +191,7 @@ def main(
             room_clock = met(bus, viewer, stop)
             if room_clock is not None:
                 if time.monotonic() + room_clock.offset_s > room_clock.start_s:
-                    # started again: its clip goes on
+                    # after a restart its clip goes on
                     prepared = prepared._replace(state=state._replace(landmarks=None))
                 with (
                     Live(
@@ -219,13 +220,13 @@ def _prepared(settings: Settings, viewer: ViewerNumber, context: ProcessContext)
 
 
 def _empty_frames(state: track.State, view: ClipView) -> int:
-    """How many frames that are looked at make a background."""
+    """Number of processed frames that make a background."""
     every, empty_s = state.setup.settings.every, state.setup.settings.silhouette.empty_s
     return math.ceil(view.frames_in(empty_s) / every)
 
 
 def _beside_the_other(view: ClipView, settings: Settings, decoder: Decoder) -> ClipView:
-    """The view at the rate of both, where the other's video is on this host too."""
+    """The view at the shared frame rate, where the other's video is on this host too."""
     named = footage_of(settings)
     here = [isinstance(each.source, str) and Path(each.source).is_file() for each in named]
     if len(named) < 2 or not all(here):
@@ -237,7 +238,7 @@ def met(bus: Bus, viewer: ViewerNumber, stop: threading.Event) -> RoomClock | No
     """The room's clock and the start of the run, once all viewers are ready; None when stopped.
 
     Raises:
-        StartError: When that takes too long.
+        StartError: When they take too long.
     """
     asked, offset = clock.init(), clock.Offset(0.0, 0.0)
     until_s = time.monotonic() + BEGIN_S
@@ -250,7 +251,7 @@ def met(bus: Bus, viewer: ViewerNumber, stop: threading.Event) -> RoomClock | No
                 f"viewer {viewer} is ready, but the run did not begin within {BEGIN_S:g} s: "
                 "start the other viewer, or take it out of the settings"
             )
-        is_ready = len(asked) >= clock.EXCHANGES - 1  # the start may come soon after that is said
+        is_ready = len(asked) >= clock.EXCHANGES - 1  # the start may follow immediately
         told = clock.exchanged(bus, ClockQuestion(viewer=viewer, ready=is_ready))
         if told is not None:
             asked, offset = clock.step(asked, told[0])
@@ -261,7 +262,7 @@ def met(bus: Bus, viewer: ViewerNumber, stop: threading.Event) -> RoomClock | No
 
 
 def _news(live: Live, guides: Guides, shedder: LoadShedder, warnings: tuple[str, ...]) -> Facts:
-    """What is odd and what was lost so far, as a Pulse tells it."""
+    """Warnings and losses so far, for a Pulse."""
     return {
         "detail": "\n".join((*warnings, *live.odd)),
         "dropped": live.dropped,

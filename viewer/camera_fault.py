@@ -1,4 +1,4 @@
-"""What is wrong with a camera's picture as a whole: it stands still, is black, white or covered."""
+"""Faults of a camera's whole picture: frozen, black, white or covered."""
 
 from typing import Final, NamedTuple
 
@@ -12,7 +12,7 @@ from viewer import frozen_picture
 from viewer.background.background import DARK, Background
 
 STRIDE: Final = 4
-"""Distance of the rows and columns whose brightness is sampled, pixels."""
+"""Stride of the rows and columns whose brightness is sampled, pixels."""
 PLAIN: Final = 16.0
 """Grey levels between the darkest and the brightest tenth of a picture, below which it shows no
 background at all."""
@@ -25,7 +25,7 @@ WHITE: Final = 195.0
 
 
 class State(NamedTuple):
-    """What pictures are held against."""
+    """What pictures are compared with."""
 
     background: NDArray[np.float32]
     """Grey levels of the background, every STRIDE pixels."""
@@ -33,19 +33,19 @@ class State(NamedTuple):
 
 
 def init(background: Background) -> State:
-    """Nothing seen yet but the background."""
+    """The state before any picture but the background."""
     return State(_grey(background.centre))
 
 
 def step(
     state: State, picture: Image, captured_s: float, moving_since_s: float | None = None
 ) -> tuple[State, CameraFault]:
-    """One picture (H, W, 3), and when it was taken; the fault that makes it useless, or "".
+    """Process a picture (H, W, 3) and its time; the fault that makes it useless, or "".
 
     Args:
-        state: Of the pictures before.
+        state: After the pictures before.
         picture: (H, W, 3)
-        captured_s: When it was taken.
+        captured_s: Capture time.
         moving_since_s: As for `frozen_picture.step`.
     """
     frozen, is_frozen = frozen_picture.step(state.frozen, picture, captured_s, moving_since_s)
@@ -54,8 +54,8 @@ def step(
 
 
 def _blank(background: NDArray[np.float32], picture: Image) -> CameraFault:
-    """What a plain picture is; before a plain wall it is that wall in another light, while there
-    is light enough to see a person by."""
+    """The fault of a plain picture. In front of a plain wall it is that wall under another
+    light, while there is enough light to see a person."""
     if _contrast_of(picture) > PLAIN:
         return ""
     grey = _grey(picture)
@@ -76,7 +76,8 @@ def _contrast(grey: NDArray[np.float32]) -> float:
 
 @compiled
 def _contrast_of(picture: Image) -> float:
-    """The same of a picture; its brightness, a sum of bytes, is counted and not sorted."""
+    """The same for a picture; the quantiles of its brightness come from a histogram of bytes,
+    without sorting."""
     counts = np.zeros(3 * 255 + 1, np.int64)
     for i in range(0, picture.shape[0], STRIDE):
         for j in range(0, picture.shape[1], STRIDE):

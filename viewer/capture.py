@@ -1,4 +1,4 @@
-"""Frames of one view: as fast as they can be decoded, or each at its moment."""
+"""Frames of one view: as fast as they can be decoded, or each at its time."""
 
 import threading
 import time
@@ -16,10 +16,10 @@ from viewer.captured_frame import CapturedFrame
 from viewer.landmarks.outside_source import OutsideSource
 
 WAITING: Final = 2
-"""Frames that may wait for a late viewer: one hides a short delay, more would only be stale."""
+"""Frames that may wait for a late viewer: one bridges a short delay, more would be outdated."""
 
 PATIENCE_S: Final = 30.0
-"""How long a recorded frame's landmarks are waited for, where nothing is late."""
+"""How long to wait for a recorded frame's landmarks, where nothing is late."""
 
 
 def recorded(
@@ -28,15 +28,15 @@ def recorded(
     """Every n-th frame of a video, as fast as they come.
 
     Args:
-        view: Of the video.
-        every: The n.
+        view: The view that the video belongs to.
+        every: The stride n.
         decoder: Reads it.
-        source: Is asked for the landmarks of every frame, and waited for.
-        start: The first frame that is asked for, by its place in the video.
+        source: Asked for the landmarks of every frame, and waited for.
+        start: Index in the video of the first frame wanted.
 
     Raises:
-        Undecodable: When there is none.
-        DecoderDied: When the decoder broke; the frames before that are good.
+        Undecodable: When there is no frame.
+        DecoderDied: When the decoder crashed; the frames before are valid.
     """
     large = source.large if source else None
     wanted = Wanted(view.every(every), start, large, view.quarters)
@@ -52,19 +52,19 @@ def recorded(
 
 
 class RoomClock(NamedTuple):
-    """When a recorded clip begins, and the room's clock."""
+    """The start of a recorded clip, and the room's clock."""
 
     start_s: float
-    """By the room's clock."""
+    """Start by the room's clock."""
     offset_s: float = 0.0
-    """The room's clock less this host's monotonic one."""
+    """The room's clock minus this host's monotonic one."""
 
 
 class Live:
-    """A view's frames, each given out when it is due; the oldest give way to a late reader.
+    """A view's frames, each delivered when it is due; the oldest are dropped for a late reader.
 
-    A thread takes them from the decoder, so a camera is never kept waiting. Frames that were due
-    before it began, as when a viewer is started again in the middle of a clip, are not given out.
+    A thread takes them from the decoder, so a camera never has to wait. Frames that were due before
+    this began, as after a restart in the middle of a clip, are not delivered.
     """
 
     def __init__(
@@ -76,7 +76,7 @@ class Live:
         clock: Clock = time.monotonic,
         decoder: Decoder | None = None,
     ) -> None:
-        """Begin to decode at once; the first frame of a video comes at the room's start.
+        """Begin to decode at once; the first frame of a video is due at the room's start.
 
         The source is asked for the landmarks of every frame, and waited for until the next is due.
         The decoder, a new one where none is given, ends with this.
@@ -108,40 +108,40 @@ class Live:
 
     @property
     def offset_s(self) -> float:
-        """The room's clock less this host's monotonic one."""
+        """The room's clock minus this host's monotonic one."""
         return self._room.offset_s
 
     def set_offset(self, offset_s: float) -> None:
-        """The same, as it is known now: clocks of two hosts drift apart."""
+        """The same, updated: clocks of two hosts drift apart."""
         self._room = self._room._replace(offset_s=offset_s)
 
     @property
     def odd(self) -> tuple[str, ...]:
-        """What went wrong with its source of landmarks so far, a line each."""
+        """Faults of its source of landmarks so far, one line each."""
         return self._source.odd if self._source else ()
 
     @property
     def dropped(self) -> int:
-        """Frames that a late reader never saw, and those that were due before it began."""
+        """Number of frames that a late reader missed or that were due before it began."""
         return self._waiting.dropped + self._missed
 
     @property
     def ending(self) -> Ending:
-        """How far the video could be read; of no frames until its end was reached."""
+        """How far the video could be read; no frames until its end was reached."""
         return self._decoder.ending
 
     @property
     def over(self) -> bool:
-        """True when the last frame was taken; of a video that broke, `take` says that."""
+        """True when the last frame was taken; for a damaged video `take` raises."""
         return self._waiting.over and self._failure is None
 
     def take(self, timeout_s: float) -> CapturedFrame | None:
-        """The next frame; None when none came in time or it is over.
+        """The next frame; None when none came in time or the video is over.
 
         Raises:
             Undecodable: When the source has no picture.
-            DecoderDied: When the decoder broke, after the last good frame.
-            CameraLost: When a camera gives no more.
+            DecoderDied: When the decoder crashed, after the last valid frame.
+            CameraLost: When a camera gives no more pictures.
         """
         frame = self._waiting.take(timeout_s)
         if frame is None and self._waiting.over and self._failure is not None:
@@ -149,7 +149,7 @@ class Live:
         return frame
 
     def _run(self) -> None:
-        """Hand on each frame at its moment; in a thread of its own."""
+        """Deliver each frame at its time; in a thread of its own."""
         view, large = self._view, self._source.large if self._source else None
         wanted = Wanted(view.every(self._every), large=large, quarters=view.quarters)
         frames = self._decoder.frames(view.source, view.size, wanted)
@@ -165,8 +165,8 @@ class Live:
                     self._waiting.put(self._with_landmarks(frame, decoded))
             if isinstance(view.source, int):
                 raise CameraLost(view.source, self._decoder.ending.frames)
-        except Exception as error:  # Whatever ended this thread is the reader's to hear,
-            self._failure = None if self._stop.is_set() else error  # unless they have left.
+        except Exception as error:  # The reader raises whatever ended this thread,
+            self._failure = None if self._stop.is_set() else error  # unless it has left.
         finally:
             frames.close()
             self._decoder.close()
@@ -192,8 +192,8 @@ class Live:
         )
 
     def _counted_from(self, now_s: float) -> int:
-        """The number of a camera's first frame: 0 at the run's start, what time says where a
-        viewer is started again, so that no number comes twice."""
+        """Number of a camera's first frame: 0 at the run's start; after a restart the one for
+        the present time, so that no number is used twice."""
         if self._first_index is None:
             since = max(0.0, now_s - self._room.start_s) * self._view.fps / self._every
             self._first_index = self._every * round(since)

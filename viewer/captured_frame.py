@@ -1,4 +1,4 @@
-"""What a viewer's step is given of a camera."""
+"""The input of a viewer's step."""
 
 import msgspec
 
@@ -11,7 +11,7 @@ class CapturedFrame(msgspec.Struct, frozen=True):
     """One picture and when it was taken."""
 
     index: int
-    """Number of the frame in the video, also where only every n-th frame is taken."""
+    """Index of the frame in the video, also where only every n-th frame is used."""
     captured_s: float
     """Seconds since the clip began, or by the room's clock for a camera."""
     clock_s: float
@@ -19,10 +19,10 @@ class CapturedFrame(msgspec.Struct, frozen=True):
     picture: Image
     """(height, width, 3), BGR, at the working size."""
     next_s: float | None = None
-    """`captured_s` of the next frame at the earliest; None for a camera, which does not know."""
+    """Earliest `captured_s` of the next frame; None for a camera, which cannot know it."""
     landmarks: tuple[Landmarks, ...] = ()
-    """Of every person that a source outside sees in it, in pixels of `picture`."""
+    """Landmarks of every person that an outside source detects, in pixels of `picture`."""
     upright: Upright | None = None
-    """How `picture` comes from the file's; None: it is that, made smaller."""
+    """How `picture` comes from the file's; None: reduced alone."""
     hurried: bool = False
     """Whether the frame comes late, so that only the silhouette is computed."""

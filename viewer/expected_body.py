@@ -1,4 +1,4 @@
-"""Where and how one view should show the body: what the integrator's guide says of it."""
+"""The integrator's guide, as a prediction for one view."""
 
 from typing import Final, NamedTuple
 
@@ -7,11 +7,11 @@ from common.body.observation import Facing, Pixel
 from common.bus.messages import Guide, ViewerNumber
 
 EXPECTED: Final = ("measuring", "tracking", "predicted")
-"""Guides with these states say where the body is; otherwise it is looked for afresh."""
+"""States of a guide that predicts the body's place; otherwise the body is searched anew."""
 
 
 class ExpectedBody(NamedTuple):
-    """A body that is followed, as one view should show it."""
+    """A followed body, as predicted for one view."""
 
     bdp: Bdp
     measured: bool
@@ -21,13 +21,13 @@ class ExpectedBody(NamedTuple):
     facing: Facing
     scale_px_per_m: float
     root_px: Pixel
-    """Where the navel is."""
+    """Predicted place of the navel."""
     rest_row_px: float
-    """Row where the navel would be, were the person upright."""
+    """Row where the navel would be if the person stood upright."""
 
 
 def expected_body(guide: Guide | None, viewer: ViewerNumber) -> ExpectedBody | None:
-    """What a viewer should see; None where the integrator does not know."""
+    """The prediction for a viewer; None where the integrator has none."""
     n = viewer - 1
     if guide is None or guide.status not in EXPECTED or guide.bdp is None:
         return None

@@ -1,4 +1,4 @@
-"""Is a picture the camera's memory? The same bit for bit, or but for what a codec makes of it."""
+"""Detection of frozen pictures: identical bit for bit, or except for a codec's changes."""
 
 from typing import Final, NamedTuple
 
@@ -10,54 +10,55 @@ from common.compiled import compiled
 from common.video.pictures import Image
 
 FROZEN_AFTER: Final = 2
-"""Repeats that may be no fault: files made for a faster rate hold each picture two or three times,
-and no recorded clip that was looked at held one more than twice."""
+"""Repeats that may be no fault: files made for a faster rate hold each picture two or three
+times, and no examined clip held one more than twice."""
 FROZEN_S: Final = FROZEN_AFTER / 15
-"""How long that takes at the paper's rate (P1): faster files hold pictures more often."""
+"""Duration of these repeats at the paper's rate, seconds (P1): faster files hold pictures more
+often."""
 CELL: Final = 16
-"""Side, pixels, of the cells in which changes are looked for."""
+"""Side of the cells in which changes are counted, pixels."""
 NOISY: Final = 0.9
-"""Share of the cells that a sensor's noise has reached sooner or later; a rendered picture changes
-where something moves, and is rightly the same while nothing does."""
+"""Share of the cells that a sensor's noise changes sooner or later; a rendered picture changes
+only where something moves, and is rightly constant while nothing does."""
 BLOCKS: Final = 40
-"""Blocks along the longer side of a picture whose means are held against each other."""
+"""Number of blocks along the longer side of a picture whose means are compared."""
 CODEC: Final = 8.0
-"""Grey levels by which codecs change a block of a picture that is repeated: 6 at most by H.264,
-H.265 and VP9, 10 where an MPEG-4 key frame comes. A person who moves changes one by 14 or more."""
+"""Grey levels by which codecs change a block of a repeated picture: 6 at most by H.264, H.265
+and VP9, 10 at an MPEG-4 key frame. A moving person changes one by 14 or more."""
 
 
 class State(NamedTuple):
-    """The picture before, and since when it is the same."""
+    """The previous picture, and how long it has been constant."""
 
     last: Image | None = None
     repeats: int = 0
-    """For how many frames it has been the same, bit for bit; `since_s`: since when."""
+    """Number of frames for which it has been the same, bit for bit; `since_s`: since when."""
     since_s: float = 0.0
     reached: NDArray[np.bool_] | None = None
-    """Cells in which anything has changed since the beginning."""
+    """Cells that have changed at least once."""
     blocks: NDArray[np.float32] | None = None
-    """Means of the first picture since which no block has changed by more than CODEC."""
+    """Block means of the first picture since which no block has changed by more than CODEC."""
     still_since_s: float = 0.0
     contradicted: bool = False
-    """The person moved since then, as the other view shows."""
+    """The person has moved since then, by the other view."""
 
 
 def step(
     state: State, picture: Image, captured_s: float, moving_since_s: float | None
 ) -> tuple[State, bool]:
-    """One picture more, and whether it is frozen.
+    """Process a picture; return whether it is frozen.
 
-    A sensor's noise makes every picture of its own. So one of a noisy source that is the same, bit
-    for bit, for more than FROZEN_AFTER frames and FROZEN_S is the camera's memory and not the
-    scene. Any picture that stays the same but for a codec's changes is, while the person in it
-    moves in the other view.
+    A sensor's noise makes every picture different. So a picture of a noisy source that stays the
+    same, bit for bit, for more than FROZEN_AFTER frames and FROZEN_S comes from the camera's
+    memory. Any picture that stays the same except for a codec's changes counts as frozen too, while
+    the person in it moves in the other view.
 
     Args:
-        state: Of the pictures before.
+        state: After the pictures before.
         picture: (H, W, 3)
-        captured_s: When it was taken.
-        moving_since_s: The person, whom this view sees, has moved in the other since then; None:
-            that is not known.
+        captured_s: Capture time.
+        moving_since_s: Since this time the person in this view has moved in the other one; None:
+            unknown.
     """
     state = _compared(_repeated(state, picture, captured_s), picture, captured_s)
     if moving_since_s is not None and moving_since_s > state.still_since_s:
@@ -67,7 +68,7 @@ def step(
 
 
 def _repeated(state: State, picture: Image, captured_s: float) -> State:
-    """The state with how often a picture came again, bit for bit, or where it changed."""
+    """The state with the count of bit-identical repeats, or with the changed cells."""
     last, reached, (high, wide) = state.last, state.reached, picture.shape[:2]
     if last is None or reached is None or last.shape != picture.shape:
         nothing = np.zeros((-(-high // CELL), -(-wide // CELL)), np.bool_)
@@ -84,7 +85,7 @@ def _is_noisy(state: State) -> bool:
 
 
 def _compared(state: State, picture: Image, captured_s: float) -> State:
-    """The state with since when no block of the picture has changed."""
+    """The state with the time since when no block has changed."""
     if state.blocks is not None and state.repeats:
         return state
     high, wide = picture.shape[:2]
@@ -98,7 +99,7 @@ def _compared(state: State, picture: Image, captured_s: float) -> State:
 
 @compiled
 def _same(one: Image, other: Image) -> bool:
-    """Whether pictures of one size are the same; the first pixels show when they are not."""
+    """Whether pictures of one size are identical; a difference mostly shows in the first pixels."""
     for y in range(one.shape[0]):
         for x in range(one.shape[1]):
             for c in range(3):
@@ -109,7 +110,7 @@ def _same(one: Image, other: Image) -> bool:
 
 @compiled
 def _with_changes(one: Image, other: Image, before: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Cells in which two pictures differ, or did before."""
+    """Cells in which two pictures differ, or earlier ones did."""
     reached = before.copy()
     for y in range(one.shape[0]):
         for x in range(one.shape[1]):

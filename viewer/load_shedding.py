@@ -1,4 +1,4 @@
-"""A viewer that is late leaves out what costs most: the look at what its silhouette holds."""
+"""Load shedding: a late viewer skips its most expensive part, the landmark network."""
 
 from typing import Final
 
@@ -7,31 +7,31 @@ import msgspec
 from viewer.captured_frame import CapturedFrame
 
 LATE: Final = 0.15
-"""Shares of a frame's period that a viewer may be late without being in a hurry."""
+"""Delay, in frame periods, up to which a viewer keeps its landmarks."""
 LASTS_S: Final = 1.0 / 3.0
-"""For how long it is then in a hurry, five frames of 15 a second; so many looks in a row are left
-out at most."""
+"""Duration of load shedding once begun, seconds: five frames at 15 Hz; at most that many frames
+in a row go without landmarks."""
 TOLD: Final = 0.02
-"""What share of a run's frames may be hurried without a word."""
+"""Share of a run's frames that may go without landmarks before it is reported."""
 
 
 class LoadShedder:
-    """Which frames are in a hurry.
+    """Decides which frames are processed without landmarks.
 
-    A machine with more rooms than it has the time for would otherwise be late with every body of
-    every room; silhouettes alone, in between, still show where the joints are.
+    A machine with too many rooms would otherwise delay every body of every room; silhouettes alone
+    still give the joints in between.
     """
 
     def __init__(self, period_s: float) -> None:
-        """Of frames so far apart."""
+        """Start for a given frame period."""
         self.frames = 0
-        """How many were in a hurry."""
+        """Number of frames processed without landmarks."""
         self._period_s = period_s
         self._lasts = max(1, round(LASTS_S / period_s))
         self._left = self._in_a_row = 0
 
     def of_frame(self, frame: CapturedFrame, late_s: float) -> CapturedFrame:
-        """A frame that was due so long ago, as one in a hurry where there is need."""
+        """The frame, marked as late where its delay requires load shedding."""
         self._left = self._lasts if late_s > LATE * self._period_s else max(self._left - 1, 0)
         if not self._left or self._in_a_row >= self._lasts:
             self._in_a_row = 0
@@ -41,7 +41,7 @@ class LoadShedder:
         return msgspec.structs.replace(frame, hurried=True)
 
     def odd(self, frames: int) -> str:
-        """What is reported at the end of so many frames; "" where few were in a hurry."""
+        """The report at the end of that many frames; "" where few were affected."""
         if self.frames <= TOLD * frames:
             return ""
         return (

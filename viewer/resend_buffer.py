@@ -1,4 +1,4 @@
-"""Reports that the integrator may not have heard: they are said again when it is back."""
+"""Reports that a restarted integrator may have missed, kept to be sent again."""
 
 from collections import deque
 from collections.abc import Iterable
@@ -9,27 +9,27 @@ from common.bus.messages import View
 
 HUB: Final = "integrator"
 MOST: Final = 128
-"""Reports that are kept, eight seconds at 15 frames a second: longer than a new start takes."""
+"""Number of reports kept: eight seconds at 15 Hz, longer than a restart takes."""
 
 
 class ResendBuffer:
-    """The reports of late, up to those that a guide has heard of."""
+    """The latest reports, after the last one that a guide takes into account."""
 
     def __init__(self) -> None:
-        """Nothing was said."""
+        """No report yet."""
         self._kept: deque[View] = deque(maxlen=MOST)
         self._gone = False
 
     def said(self, report: View) -> None:
-        """Keep a report that was published."""
+        """Keep a published report."""
         self._kept.append(report)
 
     def again(self, heard: int, alive: Iterable[Alive]) -> list[View]:
-        """What is to be said once more, oldest first: nothing but when the integrator came back.
+        """The reports to send again, oldest first: none unless the integrator came back.
 
         Args:
-            heard: The last frame of this viewer that a guide has heard of.
-            alive: Who came and went since.
+            heard: The last frame of this viewer that a guide takes into account.
+            alive: Processes that came and went since.
         """
         while self._kept and self._kept[0].frame <= heard:
             self._kept.popleft()

@@ -1,4 +1,4 @@
-"""One viewer's thinking, frame by frame: the stages of section 3 in their order."""
+"""One viewer's step: the stages of section 3 in their order."""
 
 from collections.abc import Sequence
 from typing import Final, NamedTuple
@@ -36,42 +36,42 @@ PELVIS: Final = JOINT_NAMES.index("pelvis")
 
 
 class Setup(NamedTuple):
-    """What a viewer is told before its first frame."""
+    """What a viewer knows before its first frame."""
 
     viewer: ViewerNumber
     camera: Camera | None
     """Calibrated, at the working size; None: there is no calibration."""
     settings: Settings
     method: Method
-    """What is done beyond the print."""
+    """The departures from the print."""
     alone: bool = False
-    """It is the only viewer of its run."""
+    """True for the only viewer of its run."""
 
     @property
     def searches(self) -> bool:
-        """The pose is looked for here, angle by angle; otherwise the integrator reads it off the
-        silhouettes, and this viewer cuts out and measures only."""
+        """True: this viewer searches for the pose, angle by angle; otherwise the integrator
+        reads it off the silhouettes, and this viewer only segments and measures."""
         proposed = self.method.proposals and (self.alone or self.camera is not None)
         return not (proposed or self.method.stick_lifting)
 
 
 class State(NamedTuple):
-    """What a viewer remembers between frames."""
+    """A viewer's state between frames."""
 
     setup: Setup
     fault: camera_fault.State
     silhouette: silhouette.State
     coming: tuple[Patch, ...]
-    """What of the background is to change, in the order of time."""
+    """Later changes of the background, in the order of time."""
     search: pose_search.State
     standing: Standing | None
-    """How tall the person stands; None: not known before."""
+    """Height of the standing person; None: not known before."""
     landmarks: Landmarks | None = None
-    """Of the last frame that was looked at."""
+    """Capture time of the last processed frame."""
     near_px: Pixel | None = None
-    """The middle of the last silhouette, where no guide tells where the body is expected."""
+    """Middle of the last silhouette, for frames without a guide's prediction."""
     moved: moved_camera.State | None = None
-    """Whether the camera was moved; None: no person asks."""
+    """State of the search for a moved camera; None: it is off."""
 
 
 def init(
@@ -82,14 +82,15 @@ def init(
     standing: Standing | None = None,
     somebody: Landmarks | None = None,
 ) -> State:
-    """A viewer that has seen nothing but the background.
+    """A viewer's state before its first frame.
 
     Args:
-        setup: Which viewer it is, and how it works.
+        setup: Number of the viewer and its method.
         background: The picture without people.
-        patches: What of the background changes, where a whole video was looked at before.
-        standing: How tall the person stands, likewise.
-        somebody: Who is in the first frame, likewise: without that, what is largest is followed.
+        patches: Changes of the background, where the whole video was examined before.
+        standing: Height of the standing person, from the same examination.
+        somebody: The person in the first frame, likewise; without it the largest region is
+            followed.
     """
     return State(
         setup,
@@ -104,7 +105,7 @@ def init(
 
 
 def with_background(state: State, background: Background) -> State:
-    """The viewer before another background: nothing of the old one is kept."""
+    """The viewer with a new background: nothing of the old one is kept."""
     setup = state.setup
     return state._replace(
         fault=camera_fault.init(background),
@@ -117,7 +118,7 @@ def with_background(state: State, background: Background) -> State:
 def _watched(
     setup: Setup, background: Background, before: moved_camera.State | None
 ) -> moved_camera.State | None:
-    """What tells whether the camera is moved, where a rig may become wrong by that."""
+    """The detector of a moved camera, where a rig may become wrong by that."""
     if not setup.method.follows_cameras or (setup.alone and setup.camera is None):
         return None
     high, wide = background.uncertain.shape
@@ -128,12 +129,12 @@ def _watched(
 def step(state: State, frame: CapturedFrame, guide: Guide | None) -> tuple[State, View]:
     """One frame: silhouette, opening posture, facing, position, arms, legs (P23).
 
-    A picture that shows no scene (frozen, black, white) is told and not looked at.
+    A picture that shows no scene (frozen, black, white) is reported and not processed.
 
     Args:
-        state: What this viewer remembers.
+        state: The viewer's state.
         frame: The picture.
-        guide: What the integrator made of the frame before; None at the start.
+        guide: The integrator's guide after the frame before; None at the start.
     """
     return describe(*look(state, frame, guide), guide)
 
@@ -142,9 +143,9 @@ def look(state: State, frame: CapturedFrame, guide: Guide | None) -> tuple[State
     """The silhouette and the landmarks of a frame, as a message, and the mask (H, W).
 
     Args:
-        state: What this viewer remembers.
+        state: The viewer's state.
         frame: The picture.
-        guide: What the integrator made of the frame before; None at the start.
+        guide: The integrator's guide after the frame before; None at the start.
     """
     moving_since_s = _moving_since_s(state, guide)
     watched, fault = camera_fault.step(state.fault, frame.picture, frame.captured_s, moving_since_s)
@@ -171,7 +172,7 @@ def look(state: State, frame: CapturedFrame, guide: Guide | None) -> tuple[State
 
 
 def _moving_since_s(state: State, guide: Guide | None) -> float | None:
-    """Since when the person in this view has moved in another; None where that is not known."""
+    """Time since when the person in this view has moved in another; None where that is unknown."""
     if guide is None or state.near_px is None:
         return None
     own = state.setup.viewer
@@ -180,13 +181,13 @@ def _moving_since_s(state: State, guide: Guide | None) -> float | None:
 
 
 def describe(state: State, view: View, mask: Mask, guide: Guide | None) -> tuple[State, View]:
-    """What `look` gave, with all else that its silhouette shows.
+    """The result of `look`, completed with all measurements of its silhouette.
 
     Args:
-        state: What this viewer remembers.
+        state: The viewer's state.
         view: From `look`.
         mask: (H, W) the silhouette.
-        guide: What the integrator made of the frame before; None at the start.
+        guide: The integrator's guide after the frame before; None at the start.
     """
     setup, search, person = state.setup, state.search, view.person
     if person is None:
@@ -203,7 +204,7 @@ def describe(state: State, view: View, mask: Mask, guide: Guide | None) -> tuple
 
 
 def without_person(viewer: ViewerNumber, frame: CapturedFrame) -> View:
-    """What is said of a picture that is not looked at."""
+    """The report of a picture that is not processed."""
     nothing = np.zeros(frame.picture.shape[:2], np.bool_)
     return _view_of(viewer, frame, Seen(nothing, None, 0, 0, cut=False), None)
 
@@ -211,7 +212,7 @@ def without_person(viewer: ViewerNumber, frame: CapturedFrame) -> View:
 def _view_of(
     viewer: ViewerNumber, frame: CapturedFrame, seen: Seen, landmarks: Landmarks | None
 ) -> View:
-    """What a silhouette and the landmarks in it tell."""
+    """The observation of a silhouette and its landmarks."""
     height, width = seen.mask.shape
     return View(
         frame=frame.index,
@@ -241,9 +242,10 @@ def _person_of(seen: Seen, box: Box, landmarks: Landmarks | None) -> Observation
 
 
 def _landmarks(state: State, frame: CapturedFrame, seen: Seen) -> Landmarks | None:
-    """The joints that the picture itself shows, where the method asks for them and there is time.
+    """The joints that the picture itself shows, where the method wants them and there is time.
 
-    An only view has no other to go by: it is always looked at, in a hurry not in the mirror too.
+    A single view has no other to rely on: its landmarks are always computed, in a hurry without the
+    mirrored inference.
     """
     if not state.setup.method.landmarks or _is_left_out(state.setup, frame):
         return None
@@ -255,12 +257,12 @@ def _landmarks(state: State, frame: CapturedFrame, seen: Seen) -> Landmarks | No
 
 
 def _is_left_out(setup: Setup, frame: CapturedFrame) -> bool:
-    """Whether the look at what the silhouette holds is left out."""
+    """Whether the landmarks of a frame are skipped."""
     return frame.hurried and not setup.alone and setup.settings.looks_itself
 
 
 def _followed(state: State, frame: CapturedFrame) -> State:
-    """The state before the background as it is seen since the camera was moved."""
+    """The state with the background as seen after the camera was moved."""
     if state.moved is None:
         return state
     moved, is_new = moved_camera.step(state.moved, frame.picture)
@@ -276,7 +278,7 @@ def _followed(state: State, frame: CapturedFrame) -> State:
 
 
 def _patched(state: State, index: int) -> State:
-    """The state with the background as it is from a frame on."""
+    """The state with the changes of the background up to a frame."""
     due = [patch for patch in state.coming if patch.frame <= index]
     for patch in due:
         state = state._replace(silhouette=silhouette.patched(state.silhouette, patch))
@@ -284,8 +286,8 @@ def _patched(state: State, index: int) -> State:
 
 
 def _near_px(state: State, guide: Guide | None) -> Pixel | None:
-    """Where the body is expected: where landmarks were, by the integrator, or in the one view where
-    it was last."""
+    """Expected place of the body: where landmarks were, by the integrator, or in a single view
+    its last place."""
     if state.landmarks is not None and is_trusted(state.landmarks):
         return state.landmarks.joints_px[PELVIS]
     known = expected_body(guide, state.setup.viewer)

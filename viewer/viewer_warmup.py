@@ -1,4 +1,4 @@
-"""Synthetic frames, stepped through so that all is compiled and loaded before a real one."""
+"""Synthetic frames that compile and load everything before the first real one."""
 
 import msgspec
 import numpy as np
@@ -15,15 +15,15 @@ from viewer.silhouette import silhouette
 
 
 def warm_up(state: track.State, size: tuple[int, int]) -> None:
-    """Step through four frames of a person who takes the opening posture: no person guides, an
-    integrator does, it knows the body, it asks for the stick figure.
+    """Step through four frames of a person in the opening posture: without a guide, with one, with
+    a known body, with a request for the stick body.
 
     Args:
-        state: As it begins; not changed.
+        state: The initial state; not changed.
         size: (width, height) of the working picture.
     """
     silhouette.warm()
-    squares(median(state.silhouette.model.centre[None])[None])  # of an opening that is occupied
+    squares(median(state.silhouette.model.centre[None])[None])  # for an occupied opening
     width, height = size
     view = view_at(state.search.rotation, 0.7 * height, (width / 2, 0.55 * height))
     pose = rest_pose()
@@ -45,5 +45,5 @@ def warm_up(state: track.State, size: tuple[int, int]) -> None:
     measured = msgspec.structs.replace(guide, measured=True)
     asked = msgspec.structs.replace(measured, stick=True)
     for index, given in enumerate((None, guide, measured, asked)):
-        unlike = picture ^ np.uint8(index % 2)  # else the camera would seem frozen
+        unlike = picture ^ np.uint8(index % 2)  # otherwise the camera would seem frozen
         state, _ = track.step(state, CapturedFrame(index, 0.0, 0.0, unlike), given)

@@ -1,4 +1,4 @@
-"""The background: what every pixel shows while no person is there (section 1; thesis 3.1.2)."""
+"""The background: each pixel's values without a person (section 1; thesis 3.1.2)."""
 
 from collections.abc import Sequence
 from typing import Final, NamedTuple
@@ -12,19 +12,19 @@ from common.video.pictures import Image
 from viewer.background.image_stack import Floats, Overlaid, median, overlaid
 
 SENSOR_NOISE: Final = 2.0
-"""Grey levels; taken for granted where one picture alone shows the background."""
+"""Noise of a pixel, grey levels, assumed where a single picture shows the background."""
 FLOOR: Final = (1.0, 2.5)
-"""Least spread of brightness and of colour, grey levels: rounding, and the colour that compression
-smears around a person, which no empty frame can show."""
+"""Lower bound of the spread of brightness and of colour, grey levels: rounding, and the colour
+that compression smears around a person, which no empty frame shows."""
 STRIDE: Final = 8
-"""Distance of the rows and columns from which a picture's brightness is taken, pixels."""
+"""Stride of the rows and columns at which a picture's brightness is sampled, pixels."""
 LEAST_LIGHT: Final = np.float32(0.01)
-"""No frame is taken to be darker, as a share of the background: a camera that is covered, or whose
-lights are out, shows nothing of what is there."""
+"""Lower bound of a frame's light, as a share of the background's: a covered camera, or a dark
+room, shows nothing."""
 DARK: Final = 0.2
-"""In less than this share of its light a frame shows little of the room and mostly noise."""
+"""Share of the background's light below which a frame shows mostly noise."""
 GAIN_SAMPLES: Final = 1500.0
-"""About how many pixels, on a grid, are asked for the light: a median of so many is steady."""
+"""Approximate number of grid pixels that determine the light: their median is stable."""
 
 
 class Background(NamedTuple):
@@ -41,20 +41,20 @@ class Background(NamedTuple):
     high: Floats
     """(H, W, 3) greatest values in the frames that the background was learnt from."""
     step: Floats
-    """(H, W, 3) largest changes between two of those frames."""
+    """(H, W, 3) largest changes between two successive ones."""
 
 
 class BackgroundModel(NamedTuple):
-    """What every pixel of a frame is held against; compiled passes take it as it is."""
+    """The values that every pixel of a frame is compared with; compiled passes read it directly."""
 
     centre: Floats
-    """(H, W, 3) grey levels of the background in the slow light of the day."""
+    """(H, W, 3) grey levels of the background under slowly changing light."""
     weight: Floats
     """(H, W, 2) 1 / spread^2 of brightness and of colour."""
     gain: Floats
-    """(3,) how much brighter than that the frame is."""
+    """(3,) brightness of the frame relative to that."""
     body_colours: Floats
-    """(SHADES,) from -1, only the background has this colour, to 1, only the body has it."""
+    """(SHADES,) from -1, a colour of the background alone, to 1, a colour of the body alone."""
 
 
 def learn(frames: Sequence[Image]) -> Background:
@@ -71,24 +71,24 @@ def learn(frames: Sequence[Image]) -> Background:
 
 
 def lit(frames: Sequence[Image]) -> list[Image]:
-    """Those of some pictures that are lit: a black one among them shows nothing of a room, as when
-    a camera starts, or is covered for a moment."""
+    """The lit ones of some pictures: a black one shows nothing, as when a camera starts or is
+    covered for a moment."""
     bright = [float(frame[::STRIDE, ::STRIDE].mean()) for frame in frames]
     least = DARK * max(bright, default=0.0)
     return [frame for frame, own in zip(frames, bright, strict=True) if own >= least]
 
 
 def learnt(empty: Overlaid, frames: Sequence[Image]) -> Background:
-    """The background from pictures of it, laid over each other.
+    """The background from pictures of it, as a stack.
 
-    The minimum, maximum and largest step that W4 keeps grow with the number of frames; their place
-    is taken here by mean and standard deviation, after the flicker of the light is taken out, and
-    the deviations are pooled over 5x5 pixels, since eight frames alone say little.
+    The minimum, maximum and largest step that W4 keeps grow with the number of frames. Mean and
+    standard deviation replace them here, after the flicker of the light is removed; the deviations
+    are pooled over 5x5 pixels, since eight frames alone give poor estimates.
 
-    W4's own statistics are kept beside them, for silhouettes as printed.
+    W4's own statistics are kept too, for silhouettes as printed.
 
     Args:
-        empty: The pictures, laid over each other.
+        empty: The stack of pictures.
         frames: The pictures themselves.
 
     Source: Huang & Chung 2004, section 1 (W4); requirement P3.
@@ -98,7 +98,7 @@ def learnt(empty: Overlaid, frames: Sequence[Image]) -> Background:
 
 
 def estimated(centre: Floats, spread: Floats, uncertain: NDArray[np.bool_]) -> Background:
-    """A background that no empty frame showed: its range is its estimate, give or take noise."""
+    """A background that no empty frame showed: its range is its estimate, plus and minus noise."""
     return Background(centre, spread, uncertain, centre, centre, np.full_like(centre, SENSOR_NOISE))
 
 
@@ -110,7 +110,7 @@ def _range(frames: Sequence[Image]) -> tuple[Floats, Floats, Floats]:
 
 
 def overlaid_opening(frames: Sequence[Image]) -> Overlaid:
-    """Pictures laid over each other under the light of their median.
+    """A stack of pictures, normalised to the light of their median.
 
     Raises:
         ValueError: When there is none.
@@ -124,7 +124,7 @@ def overlaid_opening(frames: Sequence[Image]) -> Overlaid:
 
 @compiling(fastmath=True)
 def light_gain(frame: Image, background: Floats) -> Floats:
-    """How much brighter a frame is than the background, per channel, whoever stands in it.
+    """Light of a frame relative to the background, per channel, with or without a person in it.
 
     The median of the ratio over a grid of pixels, then the mean of the ratios around it, so that
     neither a person nor a shadow on less than half of the picture counts.
@@ -134,7 +134,7 @@ def light_gain(frame: Image, background: Floats) -> Floats:
         background: (H, W, 3) grey levels.
 
     Returns:
-        (3,) factors, 1 where the background is too dark to say, LEAST_LIGHT at least.
+        (3,) factors, at least LEAST_LIGHT; 1 where the background is too dark to tell.
     """
     height, width = frame.shape[:2]
     stride = max(1, int(np.sqrt(height * width / GAIN_SAMPLES)))
@@ -146,7 +146,8 @@ def light_gain(frame: Image, background: Floats) -> Floats:
             for c in range(3):
                 given, asked = np.float32(frame[y, x, c]), background[y, x, c]
                 at = int(given / max(asked, np.float32(1)) * unit)
-                # what became white may be brighter than it shows; what was white already counts
+                # a saturated pixel may be brighter than it shows; one that was saturated already
+                # counts
                 if asked > 20 and (given < 250 or asked >= 250) and at < bins:
                     seen[c, at] += given
                     due[c, at] += asked
@@ -167,7 +168,7 @@ def light_gain(frame: Image, background: Floats) -> Floats:
 
 
 def even_light(frames: Sequence[Image]) -> Floats:
-    """All frames under the light of their median: (n, H, W, 3) grey levels."""
+    """All frames normalised to the light of their median: (n, H, W, 3) grey levels."""
     middle = median(frames)
     height, width = middle.shape[:2]
     # long rows divide five times as fast as triples do
@@ -178,7 +179,7 @@ def even_light(frames: Sequence[Image]) -> Floats:
 
 
 def spread_of(squares: Floats, count: int) -> Floats:
-    """Standard deviation of brightness and colour, (H, W, 2), from sums of so many squares."""
+    """Standard deviation of brightness and colour, (H, W, 2), from sums of that many squares."""
     if count == 1:
         return np.full(squares.shape, np.hypot(SENSOR_NOISE, FLOOR), np.float32)
     pooled = squares / np.float32(count - 1)
@@ -186,7 +187,8 @@ def spread_of(squares: Floats, count: int) -> Floats:
 
 
 def large_regions(mask: NDArray[np.bool_]) -> NDArray[np.uint8]:
-    """Regions as tall as an arm's stroke, 0.1 of the picture; the counter in a corner is none."""
+    """Regions at least as tall as an arm's stroke, 0.1 of the picture; a counter in a corner is
+    smaller."""
     closed = cv2.morphologyEx(mask.view(np.uint8), cv2.MORPH_CLOSE, np.ones((5, 5), np.uint8))
     contours, tree = cv2.findContours(closed, cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)
     low = [
@@ -199,7 +201,7 @@ def large_regions(mask: NDArray[np.bool_]) -> NDArray[np.uint8]:
 
 
 def slopes(luma: Floats) -> Floats:
-    """How steeply brightness changes at every pixel, (H, W)."""
+    """Gradient of the brightness at every pixel, (H, W)."""
     across = cv2.Sobel(luma, cv2.CV_32F, 1, 0)
     down = cv2.Sobel(luma, cv2.CV_32F, 0, 1)
     return cv2.magnitude(across, down)

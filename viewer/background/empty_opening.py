@@ -13,24 +13,25 @@ from viewer.background.background import large_regions, light_gain
 from viewer.background.image_stack import CHANGES, LUMA, Bytes, Floats, Overlaid
 
 EDGE_SHARE: Final = 0.45
-"""Of an empty opening the contours of what differs later keep less than this share of their
-steepness, otherwise more: 0.05-0.41 and 0.49-2.5 on every third development clip."""
+"""Share of their gradient that contours of later changes keep in the opening: less where it is
+empty, more otherwise. 0.05-0.41 and 0.49-2.5 on every third development clip."""
 
 
 def is_still(opening: Overlaid) -> bool:
-    """Whether no person moves in the opening frames: who runs through them leaves no contour."""
+    """Whether no person moves in the opening frames: a person who runs through them leaves no
+    contour."""
     return not any(large_regions(off).any() for off in opening.moving if off.any())
 
 
 def is_empty_opening(opening: Overlaid, sample: Iterable[Image]) -> bool:
     """Whether the opening frames show the background without a person.
 
-    What differs between the opening and a later frame has its contour in the picture that holds
-    the person: only in the later one if the opening is empty, in both if a person stood there.
+    A difference between the opening and a later frame has its contour in the picture that holds the
+    person: in the later one alone if the opening is empty, in both if a person stood there.
 
     Args:
         opening: The first frames of a clip.
-        sample: Frames from all over it, of the same size.
+        sample: Frames from the whole clip, of the same size.
     """
     background = np.asarray(opening.median @ LUMA, np.float32)
     in_background, in_frames = 0.0, 0.0
@@ -47,7 +48,7 @@ def is_empty_opening(opening: Overlaid, sample: Iterable[Image]) -> bool:
 def _brightness(
     frame: Image, shares: Floats, background: Floats
 ) -> tuple[Floats, NDArray[np.bool_]]:
-    """The brightness of a frame, (H, W), and where it differs from the background's."""
+    """The brightness of a frame, (H, W), and the mask of differences from the background."""
     luma, differs = np.empty_like(background), np.empty(background.shape, np.bool_)
     blue, green, red = shares[0], shares[1], shares[2]
     for y in range(len(background)):
@@ -60,7 +61,7 @@ def _brightness(
 
 
 def _contour(regions: Bytes) -> tuple[Bytes, int, int]:
-    """The contour of regions in a window around them all, and the window's first row and column."""
+    """The contour of all regions in a common window, and the window's first row and column."""
     left, top, width, height = cv2.boundingRect(regions)
     left, top = max(left - 1, 0), max(top - 1, 0)
     window = regions[top : top + height + 2, left : left + width + 2]
@@ -72,7 +73,8 @@ def _contour(regions: Bytes) -> tuple[Bytes, int, int]:
 def _steeper(
     contour: Bytes, top: int, left: int, luma: Floats, background: Floats
 ) -> tuple[float, float]:
-    """How much steeper, and flatter, brightness is than the background's, summed over a contour."""
+    """Sum over a contour of the gradient's increase, and of its decrease, relative to the
+    background."""
     steeper, flatter = 0.0, 0.0
     for i in range(len(contour)):
         for j in range(contour.shape[1]):
@@ -85,7 +87,7 @@ def _steeper(
 
 @INLINE
 def _slope(luma: Floats, y: int, x: int) -> np.float32:
-    """How steeply brightness changes at a pixel, by Sobel's operator; mirrored at the border."""
+    """Gradient of the brightness at a pixel, by Sobel's operator; mirrored at the border."""
     up, down = abs(y - 1), len(luma) - 1 - abs(len(luma) - 2 - y)
     left, right = abs(x - 1), luma.shape[1] - 1 - abs(luma.shape[1] - 2 - x)
     two = np.float32(2)

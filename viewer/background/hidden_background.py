@@ -1,4 +1,4 @@
-"""The background of a clip in which a person hides the same place all through."""
+"""The background of a clip in which a person hides the same place throughout."""
 
 from collections.abc import Sequence
 from typing import Final
@@ -14,25 +14,26 @@ from viewer.background.image_stack import CHANGES, LUMA, Floats, median
 from viewer.background.occluded_background import SHOWN, bridged, estimated_of
 
 BESIDE: Final = np.ones((3, 3), np.uint8)
-"""What lies beside a body has some of its colour: it is drawn from both sides too."""
+"""Margin around a body, pixels: what lies beside it has some of its colour, and is filled in
+too."""
 DARK, BRIGHT = np.float32(0), np.float32(255)
 
 
 def learn_behind(
     frames: Sequence[Image], body: Mask, covered: Sequence[NDArray[np.uint8]]
 ) -> Background:
-    """The background from pictures of which it is known where a person hides it in most.
+    """The background from pictures in which a person hides a known place most of the time.
 
-    It is what frames show there that is not what hides it, and comes near what is drawn from both
-    sides, or is seen while they are elsewhere. Where hardly a frame shows that, nothing is known of
-    it; but whatever is there is the body: so the background is taken to be as far from that as it
-    can be, since a guess may as well be the body's colour. When they leave, the landmarks show what
-    is left there to be a thing.
+    In that place it is what frames show that differs from the person and resembles what is
+    interpolated from both sides, or is seen while the person is elsewhere. Where hardly a frame
+    shows that, the background is unknown, and whatever is there is the body: the background is set
+    as far from it as possible, since a guess might have the body's colour. When the person leaves,
+    the landmarks show that what is left is a thing.
 
     Args:
-        frames: Pictures from all over a clip, of one size.
-        body: (H, W) of whoever their median shows.
-        covered: Of each frame (H, W), 1 where a person may be.
+        frames: Pictures from the whole clip, of one size.
+        body: (H, W) the person in their median.
+        covered: For each frame (H, W), 1 where a person may be.
     """
     even = even_light(frames)
     centre = median(even)

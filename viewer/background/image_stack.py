@@ -1,4 +1,4 @@
-"""What a stack of pictures says pixel by pixel: mean, median, spread of colours, what moves."""
+"""Pixel statistics of a stack of pictures: mean, median, spread of colours, motion."""
 
 from collections.abc import Sequence
 from typing import Final, NamedTuple
@@ -15,21 +15,21 @@ Bytes = NDArray[np.uint8]
 LUMA: Final = np.array([0.114, 0.587, 0.299], np.float32)
 """Shares of blue, green and red in brightness (ITU-R BT.601)."""
 CHANGES: Final = np.float32(12.0)
-"""Grey levels of brightness that distinguish a change from noise while no model stands."""
+"""Change of brightness, grey levels, that exceeds noise before there is a model."""
 
 
 class Overlaid(NamedTuple):
-    """One or more pictures under one light, pixel by pixel."""
+    """Statistics of one or more pictures under one light, pixel by pixel."""
 
     mean: Floats
     """(H, W, 3) grey levels."""
     median: Floats
     """(H, W, 3)."""
     squares: Floats
-    """(H, W, 2) sums of brightness squared and of colour squared, of how far all are from the mean;
-    0 for one picture."""
+    """(H, W, 2) sums of squared deviations from the mean, of brightness and of colour; 0 for one
+    picture."""
     moving: NDArray[np.bool_]
-    """(n, H, W) where a picture's brightness is not the median's."""
+    """(n, H, W) where a picture's brightness differs from the median's."""
 
 
 def median(pictures: Sequence[Image] | Floats) -> Floats:
@@ -39,14 +39,14 @@ def median(pictures: Sequence[Image] | Floats) -> Floats:
 
 @compiled
 def overlaid(frames: NDArray[np.uint8], lights: Floats) -> Overlaid:
-    """Pictures laid over each other.
+    """Statistics of a stack of pictures.
 
-    Row after row, so that what lies between never leaves the processor: whole pictures take five
+    It works row by row, so that intermediate values stay in the cache: whole pictures take five
     times as long.
 
     Args:
         frames: (n, H, W, 3).
-        lights: (n, 3) how much brighter each is than under the light that is asked for.
+        lights: (n, 3) each picture's light over the wanted light.
     """
     count, height, width = frames.shape[:3]
     found = Overlaid(
@@ -75,7 +75,7 @@ def overlaid(frames: NDArray[np.uint8], lights: Floats) -> Overlaid:
 
 @compiled
 def squares(deviations: Floats) -> Floats:
-    """Sums over (n, H, W, 3) deviations of brightness squared and of colour squared, (H, W, 2)."""
+    """Sums over (n, H, W, 3) of squared deviations of brightness and of colour, (H, W, 2)."""
     count, height, width = deviations.shape[:3]
     out, none = np.empty((height, width, 2), np.float32), np.zeros(3 * width, np.float32)
     for y in range(height):
@@ -94,10 +94,10 @@ def _median(pictures: Bytes | Floats) -> Floats:
 
 @compiled
 def _middle(ranked: Bytes | Floats, out: Floats) -> None:
-    """The medians of columns (n, m), which change places.
+    """The medians of columns (n, m), which are reordered in place.
 
-    Whole rows change places until the middle ones are in place: sorting the few values of each
-    column by themselves takes twenty times as long.
+    Whole rows are exchanged until the middle ones are in place: sorting the few values of each
+    column separately takes twenty times as long.
     """
     lower, upper = (len(ranked) - 1) // 2, len(ranked) // 2
     for last in range(len(ranked) - 1, max(lower, 1) - 1, -1):
@@ -131,7 +131,7 @@ def _set_mean(even: Floats, out: Floats) -> None:
 
 @compiled
 def _set_squares(even: Floats, mean: Floats, out: Floats) -> None:
-    """Sums over pixels' columns (n, 3 W) of brightness squared and of colour squared, (W, 2)."""
+    """Sums over pixels' columns (n, 3 W) of squared brightness and squared colour, (W, 2)."""
     out[:] = 0
     for k in range(len(even)):
         for x in range(len(out)):
@@ -146,7 +146,7 @@ def _set_squares(even: Floats, mean: Floats, out: Floats) -> None:
 
 @compiled
 def _set_moving(even: Floats, middle: Floats, out: NDArray[np.bool_]) -> None:
-    """Where the brightness of a row of pixels (3 W,) is not that of another."""
+    """Where the brightness of a row of pixels (3 W,) differs from that of another."""
     for x in range(len(out)):
         b, g = even[3 * x] - middle[3 * x], even[3 * x + 1] - middle[3 * x + 1]
         r = even[3 * x + 2] - middle[3 * x + 2]

@@ -1,4 +1,4 @@
-"""Where in the median picture of a busy clip a person may stand (3.1.2)."""
+"""Where a person may stand in the median picture of a busy clip (3.1.2)."""
 
 from typing import Final
 
@@ -12,20 +12,21 @@ from viewer.background.empty_opening import EDGE_SHARE
 from viewer.background.image_stack import CHANGES, LUMA, Floats
 
 NOISES: Final = 4.0
-"""Spreads of a pixel's own flicker that a change must pass on top of CHANGES."""
+"""Spreads of a pixel's own flicker that a change must exceed in addition to CHANGES."""
 MOST_FLICKER: Final = 2 * CHANGES
 QUIET: Final = 0.25
-"""A pixel flickers by what it stays within for this share of the frames."""
+"""Share of the frames whose range defines a pixel's flicker."""
 ROAMS: Final = 0.55
-"""A person whose middle moves sideways by this share of the height of where they are leaves every
-pixel for most of the clip: 0.5 to 2.0 for who crosses a picture, up to 0.5 on the spot."""
+"""Sideways motion of a region's middle, over the height of the region, from which a person
+leaves every pixel for most of the clip: 0.5 to 2.0 for a person who crosses a picture, up to 0.5
+on the spot."""
 RARELY: Final = 0.1
-"""Who is in the median picture and roams leaves the spot for more of the frames than this; what
-changes less often there is background that arms pass, whose own edges are taken for contours."""
+"""Share of the frames that must differ where a roaming person stands in the median picture. What
+differs less often is background that arms pass in front of, whose own edges look like contours."""
 LEAST_BLOB: Final = 0.2
-"""Less than this share of the largest change at a place does not show where the middle is."""
+"""Share of the largest change at a place below which a frame does not show where the middle is."""
 AROUND: Final = 0.25
-"""Share of the picture's height in which contours speak for each other: half a person."""
+"""Window in which contours are pooled, heights of the picture: half a person."""
 
 
 def occupied(even: Floats, centre: Floats, away: Floats, stays: bool) -> Mask:
@@ -34,8 +35,8 @@ def occupied(even: Floats, centre: Floats, away: Floats, stays: bool) -> Mask:
     Args:
         even: (n, H, W, 3) frames under one light.
         centre: (H, W, 3), their median.
-        away: (n, H, W), how far they are from it.
-        stays: What stays put counts; otherwise only what its contours show.
+        away: (n, H, W), their distance from it.
+        stays: Whether changes that stay in place count; otherwise only what their contours show.
     """
     flicker = np.minimum(NOISES * np.quantile(away, QUIET, axis=0), MOST_FLICKER)
     changed = np.stack([large_regions(off > CHANGES + flicker) for off in away])
@@ -53,7 +54,7 @@ def occupied(even: Floats, centre: Floats, away: Floats, stays: bool) -> Mask:
 
 
 def _in_median(even: Floats, centre: Floats, changed: NDArray[np.uint8]) -> Mask:
-    """(H, W) True where contours of what changes are in the median picture, not in the frames."""
+    """(H, W) True where contours of changes are in the median picture, not in the frames."""
     slope = slopes(np.asarray(centre @ LUMA, np.float32))
     in_median, in_frames = np.zeros_like(slope), np.zeros_like(slope)
     for frame, own in zip(even, changed, strict=True):
@@ -67,7 +68,7 @@ def _in_median(even: Floats, centre: Floats, changed: NDArray[np.uint8]) -> Mask
 
 
 def _travelled(changed: NDArray[np.uint8], own: Mask) -> float:
-    """How far the middle of what changes in a place moves sideways, pixels."""
+    """Sideways motion of the middle of the changes in a place, pixels."""
     columns = (changed * own).sum(axis=1)
     areas = columns.sum(axis=1)
     seen = areas > LEAST_BLOB * areas.max()

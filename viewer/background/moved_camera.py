@@ -1,4 +1,5 @@
-"""A camera that is moved while it runs: its background shifts, and the person does not count."""
+"""Detection of a camera that is moved during a run, by its background; the person does not
+count."""
 
 from typing import Final, NamedTuple
 
@@ -14,52 +15,53 @@ from viewer.background.background import Background
 from viewer.background.turned_picture import Lens, rays_of, seen_at, turn_between
 
 LOOK_EVERY: Final = 4
-"""Frames between two looks: 0.3 s at 15 a second."""
+"""Frames between two searches: 0.3 s at 15 Hz."""
 AGAIN: Final = 2
-"""Looks in a row that must find the same: then it stands still again."""
+"""Number of successive searches that must agree: then the camera stands still again."""
 CORNERS, FEWEST = 80, 16
-"""Number of marks of the background that are sought, and the fewest that are used."""
+"""Number of background marks that are chosen, and the fewest that suffice."""
 APART: Final = 0.05
 """Least distance between two marks, heights of the picture."""
 PATCH: Final = 13
-"""Side of the patch that is compared about a mark, pixels."""
+"""Side of the patch that is compared around a mark, pixels."""
 EVEN: Final = 21
-"""Side of the local means that are subtracted so that light does not count, pixels."""
+"""Side of the local means that are subtracted to remove the light, pixels."""
 ALIKE: Final = 0.85
-"""Correlation of patches from which a mark has not moved; half of the marks must reach it."""
+"""Correlation of patches above which a mark has not moved; half of the marks must reach it."""
 FOUND: Final = 0.5
 """Least share of the marks in the picture that one turn must explain for the camera to count as
 moved."""
 CLOSE_PX: Final = 1.5
-"""Distance from where the turn puts a mark within which it counts as found, pixels."""
+"""Distance from the predicted place within which a mark counts as found, pixels."""
 LEAST_PX: Final = 1.2
-"""Shift from which a camera is reported as moved, pixels: 0.3 degrees of a lens of 44 degrees at
-160 pixels."""
+"""Shift from which on a camera is reported as moved, pixels: 0.3 degrees of a lens of 44 degrees
+at 160 pixels."""
 
 
 class State(NamedTuple):
-    """The background as it was at first, and how the camera is turned against it."""
+    """The first background, and how the camera has turned since."""
 
     lens: Lens
     first: Background
     even: NDArray[np.uint8]
-    """(H, W) its brightness without its light."""
+    """(H, W) its brightness without the light."""
     marks_px: NDArray[np.float32]
-    """(n, 2) corners in it."""
+    """(n, 2) corners in it: the marks."""
     turn: Vector
-    """(3, 3) of what is seen, since then; in the camera's axes."""
+    """(3, 3) rotation of the scene since then, in the camera's axes."""
     begun: Vector
-    """(3, 3) that turn when this background was learnt: the camera may have been turned before."""
+    """(3, 3) the same rotation when this background was learnt: the camera may have been turned
+    before."""
     waited: int = 0
-    """Frames since the marks were last sought."""
+    """Frames since the last search."""
     found: Vector | None = None
-    """The turn that the last search found, where it differs."""
+    """The rotation that the last search found, where it differs."""
     looks: int = 0
-    """How many looks in a row found that."""
+    """Number of successive searches that found it."""
 
     @property
     def shift(self) -> Shift | None:
-        """How the picture is shifted since the start of the run; None: as it was."""
+        """Shift of the picture since the start of the run; None: none."""
         turned = self.turn @ self.begun
         if np.array_equal(turned, np.eye(3)):
             return None
@@ -69,12 +71,12 @@ class State(NamedTuple):
 
 
 def init(background: Background, lens: Lens, begun: Vector | None = None) -> State:
-    """A camera that stands still.
+    """The state of a camera that stands still.
 
     Args:
-        background: As it was learnt.
-        lens: Of the camera.
-        begun: How it was turned before that; None: it was not.
+        background: The learnt background.
+        lens: The camera's lens.
+        begun: Rotation of the camera before that; None: none.
     """
     even = even_of(np.asarray(np.rint(background.centre), np.uint8))
     near = cv2.dilate(background.uncertain.view(np.uint8), np.ones((PATCH, PATCH), np.uint8))
@@ -86,7 +88,7 @@ def init(background: Background, lens: Lens, begun: Vector | None = None) -> Sta
 
 
 def step(state: State, frame: Image) -> tuple[State, bool]:
-    """One frame (H, W, 3); True where the camera now stands otherwise than before."""
+    """Process a frame (H, W, 3); True where the camera's pose changes now."""
     if len(state.marks_px) < FEWEST or state.waited + 1 < LOOK_EVERY:
         return state._replace(waited=state.waited + 1), False
     state = state._replace(waited=0)
@@ -104,13 +106,13 @@ def step(state: State, frame: Image) -> tuple[State, bool]:
 
 
 def even_of(picture: Image) -> NDArray[np.uint8]:
-    """(H, W) brightness about 128, without light that changes slowly over the picture."""
+    """(H, W) brightness about 128, without light that varies slowly over the picture."""
     grey = cv2.cvtColor(picture, cv2.COLOR_BGR2GRAY)
     return np.asarray(cv2.addWeighted(grey, 1.0, cv2.blur(grey, (EVEN, EVEN)), -1.0, 128.0))
 
 
 def _is_where_it_was(state: State, even: NDArray[np.uint8]) -> bool:
-    """Whether most marks look as they did, where the camera is thought to stand."""
+    """Whether most marks are found at the camera's assumed pose."""
     expected = seen_at(state.lens, state.turn, state.marks_px)
     inside = _inside(expected, even.shape, PATCH // 2 + 1)
     if inside.sum() < FEWEST:
@@ -120,7 +122,7 @@ def _is_where_it_was(state: State, even: NDArray[np.uint8]) -> bool:
 
 
 def _found(state: State, even: NDArray[np.uint8]) -> Vector | None:
-    """The turn by which most marks are found again; None where there is none."""
+    """The rotation by which most marks are found again; None where there is none."""
     window = cv2.createHanningWindow(even.shape[::-1], cv2.CV_32F)
     one, other = (each.astype(np.float32) - 128.0 for each in (state.even, even))
     coarse, _ = cv2.phaseCorrelate(one, other, window)
@@ -138,7 +140,7 @@ def _found(state: State, even: NDArray[np.uint8]) -> Vector | None:
 
 
 def _middle_shift(first: NDArray[np.uint8], now: NDArray[np.uint8]) -> tuple[float, float]:
-    """Where the middle of one picture lies in another, from its place there."""
+    """Place in another picture of one picture's middle, from its place there."""
     high, wide = (side // 5 for side in first.shape)
     middle = first[high : first.shape[0] - high, wide : first.shape[1] - wide]
     scores = cv2.matchTemplate(now, np.ascontiguousarray(middle), cv2.TM_CCOEFF_NORMED)
@@ -149,7 +151,7 @@ def _middle_shift(first: NDArray[np.uint8], now: NDArray[np.uint8]) -> tuple[flo
 def _turn_from(
     state: State, even: NDArray[np.uint8], start_px: NDArray[np.float32]
 ) -> tuple[float, Vector]:
-    """The share of the marks in the picture that one turn explains, and that turn."""
+    """The share of the visible marks that one rotation explains, and that rotation."""
     now, status, _ = cv2.calcOpticalFlowPyrLK(
         state.even,
         even,
@@ -171,7 +173,7 @@ def _turn_from(
 
 
 def _apart_px(state: State, one: Vector, other: Vector) -> float:
-    """How far two turns have the marks apart, mostly."""
+    """Typical distance of the marks under two rotations."""
     places = [seen_at(state.lens, turn, state.marks_px) for turn in (one, other)]
     return float(np.median(np.linalg.norm(places[0] - places[1], axis=1)))
 
@@ -190,7 +192,7 @@ def _alike(
     now: NDArray[np.uint8],
     there_px: NDArray[np.float64],
 ) -> Vector:
-    """(n,) correlation of what is about places of one picture with places of another."""
+    """(n,) correlation of patches around places in two pictures."""
     patches = []
     for picture, places in ((first, at_px), (now, there_px)):
         reach = np.arange(PATCH) - PATCH // 2

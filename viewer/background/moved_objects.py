@@ -1,4 +1,4 @@
-"""Things that come to stay, or go, while a clip runs: doors, chairs, captions (after T7)."""
+"""Objects that appear or disappear during a clip: doors, chairs, captions (after T7)."""
 
 import math
 from collections.abc import Sequence
@@ -13,13 +13,13 @@ from viewer.background.background import Background, even_light, spread_of
 from viewer.background.image_stack import CHANGES, LUMA, Floats, median, squares
 
 AT_REST_S: Final = 10.0
-"""Seconds after which a region that stays the same is an object: no standing person holds still for
-so long, edges included. A person who lies still for longer is lost until they move."""
+"""Seconds after which a constant region is an object: no standing person holds still for so
+long, edges included. A person who lies still for longer is lost until they move."""
 FEWEST: Final = 6
-"""Fewest pictures of that time from which a moved object is recognised."""
+"""Fewest pictures within that time that reveal a moved object."""
 CALM: Final = 0.9
-"""Least share of those pictures in which a pixel of an object is the same: a person may pass before
-it."""
+"""Share of those pictures in which a pixel of an object must be the same: a person may pass in
+front."""
 RESTLESS: Final = 0.35
 """Share of an object's surroundings that may move; around a bending trunk more does."""
 LOOKS: Final = 6
@@ -30,7 +30,7 @@ EDGE_PX: Final = 2
 
 
 class Patch(NamedTuple):
-    """What of the background is another from a frame on."""
+    """A change of the background from a frame on."""
 
     frame: int
     where: Mask
@@ -44,15 +44,15 @@ class Patch(NamedTuple):
 def patches_of(
     background: Background, frames: Sequence[Image], spacing: int, fps: float
 ) -> list[Patch]:
-    """What comes to rest in a clip, or leaves where it was at rest, in the order of time.
+    """Objects that come to rest in a clip, or leave their place, in the order of time.
 
-    Where the background was guessed, what is first seen at rest was there from the start.
+    Where the background was guessed, the first object at rest was there from the start.
 
     Args:
-        background: Learnt from all the clip.
-        frames: Pictures (H, W, 3) from all over it, from its first on.
-        spacing: Frames of the clip from one to the next.
-        fps: Of the clip.
+        background: Learnt from the whole clip.
+        frames: Pictures (H, W, 3) from the whole clip, from its first on.
+        spacing: Frames of the clip between two of them.
+        fps: Frame rate of the clip.
     """
     due = max(FEWEST, math.ceil(AT_REST_S * fps / spacing))
     found: list[Patch] = []
@@ -84,10 +84,10 @@ def _smooth(mask: Mask) -> Mask:
 
 
 def _moved_objects(shown: Floats, now: Floats, settled: Mask) -> Mask:
-    """(H, W) True where what is at rest is not the background as it was.
+    """(H, W) True where something at rest differs from the original background.
 
-    A region that differs, with all that moves and touches it, is a thing if little of the ring
-    around it moves.
+    A region that differs, with everything that moves and touches it, is an object if little of the
+    ring around it moves.
     """
     differs = settled & (np.abs((shown - now) @ LUMA) > CHANGES)
     beyond = np.ones((3, 3), np.uint8)

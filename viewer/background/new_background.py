@@ -1,4 +1,4 @@
-"""A new background in the middle of a run, from frames that show no person."""
+"""A new background during a run, from frames that show no person."""
 
 from common.bus.control_messages import Answer, Command
 from common.bus.inbox import Inbox
@@ -9,23 +9,23 @@ from viewer.background.empty_opening import is_still
 
 
 class Learning:
-    """Gathers frames once it is asked to, and learns the background from them."""
+    """Gathers frames on command, and learns the background from them."""
 
     def __init__(self, commands: Inbox[Command], viewer: ViewerNumber, due: int) -> None:
-        """Listen to commands; nothing is gathered yet.
+        """Subscribe to commands; nothing is gathered yet.
 
         Args:
-            commands: Of the run.
-            viewer: Whose camera it is.
-            due: How many frames make a background.
+            commands: Commands to the run.
+            viewer: Number of the viewer.
+            due: Number of frames that make a background.
         """
         self._commands, self._viewer, self._due = commands, viewer, due
         self._frames: list[Image] | None = None
 
     def step(self, picture: Image, fault: CameraFault) -> tuple[Background | None, Answer | None]:
-        """One frame: the new background, if it is known now, and what to report of it.
+        """Process a frame: the new background, once complete, and the outcome to report.
 
-        Frames in which something moves, or that show no scene, are no background, and the old one
+        Frames in which something moves, or that show no scene, give no background, and the old one
         stays.
         """
         if any(command.what == "background" for command in self._commands.drain()):

@@ -1,4 +1,5 @@
-"""The background of a busy clip: what no person hides, and what is never uncovered (3.1.2)."""
+"""The background of a busy clip: what no person hides, and a fill where it is never uncovered
+(3.1.2)."""
 
 from collections.abc import Sequence
 from typing import Final
@@ -19,48 +20,46 @@ SEGMENT_SIGMA: Final = 0.8
 LEAST_SEGMENT_PX: Final = 20
 """Felzenszwalb and Huttenlocher's own values for pictures of this size (T7)."""
 MOST_HIDDEN: Final = 0.25
-"""Largest share of a picture that one standing person hides; more is hidden by several people who
-move."""
+"""Largest share of a picture that one standing person hides; several moving people hide more."""
 OUTSIDE: Final = 0.5
-"""Share of a segment outside of where people are, from which the segment is background."""
+"""Share of a segment outside the people's places from which on the segment is background."""
 AT_EDGE_PX: Final = 8
-"""Pixels of a segment on the picture's border outside of where people are, from which it is
+"""Pixels of a segment on the picture's border, outside the people's places, from which on it is
 background."""
 INSIDE: Final = 0.3
-"""Share of another segment inside of where people are, from which all of it is the person: legs
-that stand still."""
+"""Share of another segment inside the people's places from which on it belongs to the person:
+legs that stand still."""
 SHOWN: Final = 0.1
-"""Share of the frames below which a colour that they show may be clothes of the wall's
-brightness."""
+"""Share of the frames below which a colour in them may be clothes of the wall's brightness."""
 LEAST_SHOWN: Final = 2
-"""Fewer frames than this do not show a pixel."""
+"""Fewest frames that show a pixel."""
 ALIKE: Final = 2.5
-"""Spreads of a segment's colour within which a pixel of it is believed to be background too."""
+"""Spreads of a segment's colour within which one of its pixels is background too."""
 
 
 class NoSegments(RuntimeError):
-    """The library that segments pictures is missing: the text names the cure."""
+    """The segmentation library is missing: the text names the cure."""
 
 
 def learn_uncovered(frames: Sequence[Image]) -> Background:
-    """The background from pictures in which a person may be always in view.
+    """The background from pictures in which a person may always be in view.
 
-    What does not change is background, unless it is hidden: a place where what changes stays put
-    has a person in the median picture, and so has one where the contours of what changes belong
-    to the median as much as to the frames. There the median is believed only in segments of one
-    colour that reach beyond the place. What is left is drawn from both sides, and gives way to
-    what frames show if enough of them come near that; else the pixel was never uncovered and
-    is flagged.
+    What does not change is background, unless a person hides it. A place hides a person in the
+    median picture where its changes stay in place, and where the contours of its changes belong to
+    the median as much as to the frames. There the median is believed only in segments of one colour
+    that reach beyond the place. The rest is interpolated from both sides, and replaced by what
+    frames show if enough of them resemble that; otherwise the pixel was never uncovered and is
+    flagged.
 
     Args:
-        frames: Pictures from all over a clip, of one size.
+        frames: Pictures from the whole clip, of one size.
 
     Raises:
         ValueError: When there is no frame.
         NoSegments: When scikit-image is not installed.
 
-    Source: Demir 2006, section 3.1.2 (T7). The print takes what never changes for background, and
-    with it whoever never moves; hidden places are our addition.
+    Source: Demir 2006, section 3.1.2 (T7). The print takes everything constant for background,
+    including a person who never moves; hidden places are our addition.
     """
     if not frames:
         raise ValueError("a background needs at least 1 frame, got 0")
@@ -77,14 +76,14 @@ def learn_uncovered(frames: Sequence[Image]) -> Background:
 
 
 def learn_around(frames: Sequence[Image], covered: Sequence[NDArray[np.uint8]]) -> Background:
-    """The background from pictures of which it is known where a person is.
+    """The background from pictures in which a person's places are known.
 
-    A pixel shows the room in the frames in which no person is near it; where there are none, it is
-    drawn from both sides.
+    A pixel takes the frames in which no person is near it; where there are none, it is interpolated
+    from both sides.
 
     Args:
-        frames: Pictures from all over a clip, of one size.
-        covered: Of each (H, W), 1 where a person may be.
+        frames: Pictures from the whole clip, of one size.
+        covered: For each (H, W), 1 where a person may be.
     """
     even, hidden = even_light(frames), np.stack(covered) > 0
     shown = np.count_nonzero(~hidden, axis=0)
@@ -96,7 +95,7 @@ def learn_around(frames: Sequence[Image], covered: Sequence[NDArray[np.uint8]]) 
 
 
 def _shown_median(even: Floats, hidden: Mask, shown: NDArray[np.int64]) -> Floats:
-    """(H, W, 3) the median of the frames that show a pixel; of all where none does."""
+    """(H, W, 3) the median of the frames that show a pixel; of all frames where none does."""
     centre = median(even)
     some = hidden.any(axis=0) & (shown > 0)
     values = np.where(hidden[:, some][..., None], np.inf, even[:, some])
@@ -112,7 +111,7 @@ def _shown_median(even: Floats, hidden: Mask, shown: NDArray[np.int64]) -> Float
 def estimated_of(
     off: Floats, away: Floats, background: Floats, held: Mask, uncertain: Mask
 ) -> Background:
-    """A background with how far frames stay from its centre while no person changes them."""
+    """A background with the deviation of frames from its centre where no person changes them."""
     calm = np.where((away < CHANGES)[..., None], off, 0.0).astype(np.float32)
     spread = spread_of(squares(calm), len(off))
     if held.any() and not held.all():
@@ -122,7 +121,7 @@ def estimated_of(
 
 
 def _filled(even: Floats, centre: Floats, held: Mask) -> tuple[Floats, Mask]:
-    """The background (H, W, 3) with what is held filled, and where hardly a frame shows that."""
+    """The background (H, W, 3) with hidden places filled, and where hardly a frame shows them."""
     guess = bridged(centre, held)
     near = np.abs((even - guess) @ LUMA) < CHANGES
     shown = near.sum(axis=0)
@@ -133,7 +132,7 @@ def _filled(even: Floats, centre: Floats, held: Mask) -> tuple[Floats, Mask]:
 
 
 def segments(picture: Floats) -> NDArray[np.int64]:
-    """Segments of one colour, (H, W) numbers from 0 on, by Felzenszwalb and Huttenlocher.
+    """Segments of one colour, (H, W) numbers from 0, by Felzenszwalb and Huttenlocher.
 
     Raises:
         NoSegments: When scikit-image is not installed.
@@ -182,7 +181,7 @@ def _alike(centre: Floats, labels: NDArray[np.int64], where: Mask) -> Mask:
 
 
 def bridged(picture: Floats, held: Mask) -> Floats:
-    """The picture with the held stretch of every row drawn from its two ends."""
+    """The picture with the hidden stretch of every row interpolated from its two ends."""
     out = picture.copy()
     columns = np.arange(picture.shape[1])
     for y in np.flatnonzero(held.any(axis=1) & ~held.all(axis=1)):

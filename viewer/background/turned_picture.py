@@ -1,4 +1,4 @@
-"""What a camera shows after it was turned, from what it showed before."""
+"""The picture of a camera after a rotation, from its picture before."""
 
 from typing import Final, NamedTuple
 
@@ -12,20 +12,20 @@ from viewer.background.background import Background, slopes
 from viewer.background.image_stack import LUMA
 
 USUAL_FOCAL: Final = 1.25
-"""Of a camera that is not calibrated, over the width of its picture: a lens of 44 degrees."""
+"""Focal length of an uncalibrated camera, over the width of its picture: a lens of 44 degrees."""
 HALF: Final = 0.5
-"""What the middle of the first pixel is, in a Camera's pixels; here it is 0, as for OpenCV."""
+"""Coordinate of the first pixel's middle in a Camera; here, as in OpenCV, it is 0."""
 ROUNDS: Final = 8
 EDGE_PX: Final = 0.35
-"""How far an edge may be from where it was turned to."""
+"""Tolerance of an edge's place after the rotation, pixels."""
 SOBEL: Final = 8.0
-"""How a slope of 1 a pixel is written."""
+"""Fixed-point unit of a slope of 1 per pixel."""
 
 Places = NDArray[np.float64]
 
 
 class Lens(NamedTuple):
-    """How a camera makes pixels of rays."""
+    """A camera's projection of rays to pixels."""
 
     K: Vector
     """(3, 3) for pixels whose first has its middle at 0."""
@@ -34,15 +34,15 @@ class Lens(NamedTuple):
 
     @property
     def focal_px(self) -> Vector:
-        """(2,) across and down."""
+        """(2,) focal lengths across and down."""
         return np.array([self.K[0, 0], self.K[1, 1]])
 
 
 def lens_of(camera: Camera | None, size_px: tuple[int, int]) -> Lens:
-    """The lens of a camera; a usual one where it is not calibrated.
+    """The lens of a camera; a default one where it is not calibrated.
 
     Args:
-        camera: At the size of the pictures.
+        camera: For pictures of this size.
         size_px: Width and height of the pictures.
     """
     if camera is not None:
@@ -55,7 +55,7 @@ def lens_of(camera: Camera | None, size_px: tuple[int, int]) -> Lens:
 
 
 def rays_of(lens: Lens, places_px: NDArray[np.float32] | Places) -> Places:
-    """(n, 3) unit vectors in the camera's axes of what pixels (n, 2) show."""
+    """(n, 3) unit vectors in the camera's axes of the rays of pixels (n, 2)."""
     places = np.asarray(places_px, float).reshape(-1, 1, 2)
     flat = cv2.undistortPoints(places, lens.K, lens.distortion)[:, 0]
     rays = np.concatenate([flat, np.ones((len(flat), 1))], axis=1)
@@ -64,7 +64,7 @@ def rays_of(lens: Lens, places_px: NDArray[np.float32] | Places) -> Places:
 
 
 def seen_at(lens: Lens, turn: Vector, places_px: NDArray[np.float32] | Places) -> Places:
-    """(n, 2) where what pixels (n, 2) showed is seen after a turn (3, 3)."""
+    """(n, 2) places of pixels (n, 2) after a rotation (3, 3) of the scene."""
     rays = rays_of(lens, places_px) @ turn.T
     zero = np.zeros(3)
     found, _ = cv2.projectPoints(rays.reshape(-1, 1, 3), zero, zero, lens.K, lens.distortion)
@@ -72,14 +72,14 @@ def seen_at(lens: Lens, turn: Vector, places_px: NDArray[np.float32] | Places) -
 
 
 def turn_between(before: Places, after: Places, close: float) -> Vector:
-    """The turn (3, 3) that takes most rays (n, 3) to others, whatever the rest do.
+    """The rotation (3, 3) that maps most rays (n, 3) to others, whatever the rest do.
 
-    Weighed least squares (Kabsch), the weights from what the round before left over.
+    Weighted least squares (Kabsch), with weights from the residuals of the round before.
 
     Args:
         before: Unit vectors.
-        after: Where each is found again.
-        close: Radians by which rays that belong to it miss.
+        after: The same rays found again.
+        close: Residual of matching rays, radians.
     """
     weights, turn = np.ones(len(before)), np.eye(3)
     for _ in range(ROUNDS):
@@ -94,14 +94,13 @@ def turn_between(before: Places, after: Places, close: float) -> Vector:
 def turned_background(
     first: Background, lens: Lens, turn: Vector, frame: NDArray[np.uint8]
 ) -> Background:
-    """A background as a camera shows it after a turn; what it did not show before is as a frame
-    has it now.
+    """A background after a rotation of the camera; what was out of the picture comes from a frame.
 
     Args:
-        first: Before the turn.
-        lens: Of the camera.
-        turn: (3, 3) of what is seen.
-        frame: (H, W, 3) now.
+        first: The background before the rotation.
+        lens: The camera's lens.
+        turn: (3, 3) rotation of the scene.
+        frame: (H, W, 3) the present frame.
     """
     high, wide = first.uncertain.shape
     grid = np.stack(np.meshgrid(np.arange(wide), np.arange(high)), axis=-1).reshape(-1, 2)
@@ -117,7 +116,7 @@ def turned_background(
     levels = [
         np.where(new[..., None], now, moved(each)) for each in (first.centre, first.low, first.high)
     ]
-    # between pixels edges are guessed: they may differ from the guess by a share of their height
+    # edges between pixels are interpolated: tolerate a share of their height
     steep = EDGE_PX / SOBEL * slopes(np.asarray(levels[0] @ LUMA, np.float32))
     return Background(
         levels[0],

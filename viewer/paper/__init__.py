@@ -1,1 +1,1 @@
-"""The paper's stages of one view: measures, facing, position, arms, legs (sections 2.4 and 3)."""
+"""The paper's stages for one view: measures, facing, position, arms, legs (sections 2.4 and 3)."""

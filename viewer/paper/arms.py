@@ -11,13 +11,13 @@ from viewer.paper.posed_model import PosedModel, SearchRange, matched, searched,
 
 SIDES: Final = ("r", "l")
 BEND_MOST_DEG: Final = 140.0
-"""Furthest that an elbow bends (section 3.3, step 2)."""
+"""Largest bend of an elbow, degrees (section 3.3, step 2)."""
 
 HIDDEN: Final = 0.004
-"""What an arm must gain in S to be moved in the flank, five pixels of a body of 2000: one that the
-trunk or the other arm hides stays where it was."""
+"""Smallest gain in S for which an arm moves in the flank view, five pixels of a body of 2000: an
+arm hidden by the trunk or the other arm stays where it was."""
 ANY_GAIN: Final = -1.0
-"""As printed the best angle of a search is taken, whatever it gains."""
+"""As printed, the best angle of a search is taken for any gain."""
 
 _SHOULDER_Z = [turn(ARM_LIMBS[i], **{f"{side}_shoulder_z": 1.0}) for i, side in enumerate(SIDES)]
 _SHOULDER_X = [turn(ARM_LIMBS[i], **{f"{side}_shoulder_x": 1.0}) for i, side in enumerate(SIDES)]
@@ -26,10 +26,10 @@ _BOTH_X = turn(ARM_LIMBS[0] + ARM_LIMBS[1], r_shoulder_x=1.0, l_shoulder_x=1.0)
 
 
 def half_turn_deg(side: str, shoulder_x_deg: float) -> float:
-    """What theta_Z has to spare where theta_X has swung the arm up past the horizontal.
+    """Margin of theta_Z, degrees, where theta_X has swung the arm up past the horizontal.
 
-    There the arm points up at theta_Z = 180, and outwards is beyond it: the ranges of P30 and the
-    inward limit hold for theta_Z less this half turn. A departure: printed is one range.
+    There the arm points up at theta_Z = 180, and outwards lies beyond: the ranges of P30 and the
+    inward limit apply to theta_Z less this half turn. A departure: the print has one range.
     """
     if math.cos(math.radians(shoulder_x_deg)) >= 0.0:
         return 0.0
@@ -37,7 +37,7 @@ def half_turn_deg(side: str, shoulder_x_deg: float) -> float:
 
 
 def inward_limit_deg(side: str, shoulder_z_deg: float) -> float:
-    """th_a: how far the elbow may bend inwards before the lower arm meets the trunk.
+    """th_a: largest inward bend of the elbow before the lower arm meets the trunk.
 
     At the limit the wrist lies on the vertical line through the shoulder. Left arm mirrored.
 
@@ -77,13 +77,13 @@ def flank_arms(
     """theta_X of both shoulders from one silhouette (P32).
 
     Both arms share it: they are searched together as one swing and one after the other (the near
-    arm first), and the better explanation is kept; a tie goes to the common swing.
+    arm first), and the better explanation is kept; the common swing wins a tie.
 
     Args:
         model: The model so far.
         settings: Widths of the search.
         near: 0 where the right arm is nearer to the camera, 1 where the left is.
-        wide: Nothing is known of the angles.
+        wide: True where the angles are unknown.
         method: Whether hidden arms stay.
     """
     width, stop = settings.arm_window_deg, settings.stop_deg
@@ -105,14 +105,15 @@ def flank_arms(
 
 
 def _whole_turn(model: PosedModel, i: int) -> tuple[float, float]:
-    """The printed range of theta_X, [-180, 180], around where it is: its ends are one pose, so a
-    search goes on through them, and every probe lies in the range when it is wrapped (P30)."""
+    """The printed range of theta_X, [-180, 180], centred on the present angle: its ends are one
+    pose, so a search passes through them, and every probe lies in the range after wrapping
+    (P30)."""
     angle = model.pose[_SHOULDER_X[i].at]
     return angle - 180.0, angle + 180.0
 
 
 def _with_elbow_outward(model: PosedModel, side: str, outward_deg: float) -> PosedModel:
-    """theta_Y outwards, the elbow's sign turned with it: the same place of the forearm."""
+    """theta_Y outwards and the elbow's sign turned with it: the same place of the forearm."""
     pose = model.pose.copy()
     y, elbow = POSE_INDEX[f"{side}_shoulder_y"], POSE_INDEX[f"{side}_elbow_x"]
     if pose[y] * outward_deg < 0.0:

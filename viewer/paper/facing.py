@@ -9,14 +9,14 @@ from common.body.observation import Facing
 from common.raster.similarity import Mask
 
 FACADE_YAW_DEG, FLANK_YAW_DEG = 35.0, 55.0
-"""Yaw up to which a view is surely the facade, and from which it is surely the flank (P26)."""
+"""Yaws up to which a view is surely the facade, and from which on surely the flank (P26)."""
 
 HIP_SHARE = 0.2
-"""How far below the body's centre the hips are, in heights of the trunk (P24)."""
+"""Depth of the hips below the body's centre, in heights of the trunk (P24)."""
 
 
 def upper_body_px(mask: Mask, centre_row: float, torso_px: float) -> float:
-    """W_u-body: width of the columns that are higher than the trunk, above the hips.
+    """W_u-body: width of the columns that are taller than the trunk, above the hips.
 
     Args:
         mask: The silhouette, (H, W).
@@ -24,7 +24,7 @@ def upper_body_px(mask: Mask, centre_row: float, torso_px: float) -> float:
         torso_px: Height of the trunk in this picture: height_torso r_t,n.
 
     Returns:
-        x2 - x1 of the first and last such column; 0 where there are fewer than two.
+        x2 - x1 for the first and last such column; 0 where there are fewer than two.
 
     Source: section 3.1 with the readings M8 and M9: rows run down, so the hips are at
     y_c + 0.2 height_torso; the scale factor is in `torso_px` and `centre_row` already (P24, P25).
@@ -48,7 +48,7 @@ def thresholds_px(bdp: Bdp, px_per_m: float) -> tuple[float, float]:
 
 
 def vote(before: Facing, width_px: float, limits_px: tuple[float, float]) -> Facing:
-    """What the view takes itself for: changes only beyond a threshold (P26)."""
+    """This view's vote: it changes only beyond a threshold (P26)."""
     low, high = limits_px
     if width_px < low:
         return "flank"

@@ -1,4 +1,4 @@
-"""Fine tuning of what was read off the opening posture, by the match itself (section 2.4, P20)."""
+"""Fine tuning of the opening posture's lengths, by matching (section 2.4, P20)."""
 
 import math
 from collections.abc import Callable
@@ -26,7 +26,7 @@ from viewer.paper.posed_model import view_at
 from viewer.paper.tritree import tritree
 
 GRID: Final = 8
-"""Fine tuning counts lengths in eighths of a pixel."""
+"""Unit of lengths in fine tuning: eighths of a pixel."""
 ENOUGH: Final = 1e-3
 """Fine tuning stops when a round adds less than this to S (P20)."""
 MOST_ROUNDS: Final = 4
@@ -34,17 +34,17 @@ ABOVE_CENTRE: Final = 0b1111000011
 """Limbs that fine tuning matches: trunk, head and arms."""
 R_SHOULDER_Z, L_SHOULDER_Z = POSE_INDEX["r_shoulder_z"], POSE_INDEX["l_shoulder_z"]
 TIP_PX: Final = 1.0
-"""How far fine tuning may move an arm's tip from where it was seen: hands are thinner than the
-cylinders, so S alone would cut them off (P20: within 1 px)."""
+"""Largest displacement of an arm's tip by fine tuning: hands are thinner than the cylinders, so
+S alone would cut them off (P20: within 1 px)."""
 
 
 def fine_tuned(
     mask: Mask, bdp: Bdp, centre_px: tuple[float, float], arms_z_deg: tuple[float, float]
 ) -> tuple[Bdp, tuple[float, float]]:
-    """Trunk radius, arm radius, arm angles and arm length, each set in turn to what scores best.
+    """Trunk radius, arm radius, arm angles and arm length, each in turn set to its best score.
 
-    Coordinate descent on S by the tritree itself, until a round gains less than ENOUGH (P20).
-    Only what lies above y_c is matched: legs that stand apart would widen the trunk (P13).
+    Coordinate descent on S by the tritree itself, until a round gains less than ENOUGH (P20). Only
+    the part above y_c is matched: legs apart would widen the trunk (P13).
     """
     upper = mask.copy()
     upper[round(centre_px[1]) :] = False
@@ -79,7 +79,7 @@ def _score(
     seen: Bits,
     seen_px: int,
 ) -> float:
-    """S of the body with other values; its lengths and its pose are set to them."""
+    """S of the body with other values; they are written into its lengths and its pose."""
     lengths[TORSO_RADIUS] = values[0]
     for at in range(ARMS, LENGTHS, PER_ROUND):
         lengths[at] = values[1]
@@ -93,7 +93,7 @@ def _score(
 def _climbed(
     score_of: Callable[[list[float]], float], values: list[float], spans: list[float]
 ) -> list[float]:
-    """Values set in turn to what scores best, each within its span, until a round gains little."""
+    """Values, each in turn set to its best score within its span, until a round gains little."""
     values, best = list(values), score_of(values)
 
     def score_along(i: int) -> Callable[[float], float]:

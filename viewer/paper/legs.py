@@ -10,8 +10,8 @@ from viewer.paper.posed_model import PosedModel, SearchRange, searched, turn
 
 SIDES: Final = ("r", "l")
 SQUAT_SHARE, RISE_SHARE = 0.04, 0.025
-"""How far below its height in the opening posture the navel must be to squat, and how near to
-rise again, in statures: normal walking bobs by 2-3 % (P33)."""
+"""Drop of the navel from its height in the opening posture that begins a squat, and that ends
+it, statures: normal walking bobs by 2-3 % (P33)."""
 
 _HIP_Z = [turn(LEG_LIMBS[i], **{f"{side}_hip_z": 1.0}) for i, side in enumerate(SIDES)]
 _HIP_X = [turn(LEG_LIMBS[i], **{f"{side}_hip_x": 1.0}) for i, side in enumerate(SIDES)]
@@ -24,7 +24,7 @@ _BOTH_SQUAT = turn(
     LEG_LIMBS[0] + LEG_LIMBS[1], r_hip_x=1.0, r_knee_x=-2.0, l_hip_x=1.0, l_knee_x=-2.0
 )
 _SQUAT_LIMITS_DEG: Final = (0.0, -LIMITS_DEG["r_knee_x"][0] / 2)
-"""The knee, bent twice as far as the hip, ends the range (P34)."""
+"""The knee, bent twice as far as the hip, limits the range (P34)."""
 
 
 def squats(before: bool, drop_share: float) -> bool:
@@ -33,7 +33,7 @@ def squats(before: bool, drop_share: float) -> bool:
 
 
 def facade_legs(model: PosedModel, settings: SearchSettings, squatting: bool) -> PosedModel:
-    """theta_Z of both hips; squatting also theta_X with knee = -2 theta_X (P33, P34).
+    """theta_Z of both hips; in a squat also theta_X with knee = -2 theta_X (P33, P34).
 
     The triangle of hip, knee and foot has two equal sides, so the foot stays under the hip (C6).
     """
@@ -51,7 +51,7 @@ def flank_legs(
 ) -> PosedModel:
     """theta_X of the hip and then of the knee, the near leg first (P35).
 
-    Both legs share the silhouette, and a leg alone moves behind the other unseen: beyond the print
+    Both legs share the silhouette, and one leg can move unseen behind the other: beyond the print
     they are also searched together as one squat, and the better explanation is kept.
     """
     width, stop = settings.leg_window_deg, settings.stop_deg

@@ -17,20 +17,21 @@ from viewer.paper.fine_tuning import fine_tuned
 TORSO_SHARE: Final = 0.4
 """Torso to leg is 4 : 6 (P16)."""
 HEAD_LONG, HEAD_SHORT, LEG_LONG, LEG_SHORT = 0.20, 0.16, 0.20, 0.18
-"""Radii over the width of the trunk (P17); the leg's depth as M10 reads it."""
+"""Radii over the width of the trunk (P17); the leg's depth by M10."""
 CENTRE_SHARE: Final = 1 - (1 - TORSO_SHARE) * (1 - THESIS_RATIOS["head"] / THESIS_RATIOS["stature"])
-"""Centre of the body below the crown over the stature, by the thesis's head (T4) and P16."""
+"""Depth of the body's centre below the crown, statures, from the thesis's head (T4) and P16."""
 
 SPAN_LEAST: Final = 0.7
-"""Arms are stretched out when they span this share of the height at least."""
+"""Smallest span of stretched arms, heights of the person."""
 ARM_LIMITS_DEG: Final = (70.0, 115.0)
-"""Arms at the horizontal or a little below: above it P14 finds the shoulder in the arms (P10)."""
+"""Range of the arms' angles: horizontal or a little below; above it P14 finds the shoulder in
+the arms (P10)."""
 TORSO_LIMITS: Final = (0.12, 0.36)
-"""Widths of a trunk over the height that a person standing with closed feet can have."""
+"""Range of a trunk's width over the height of a person with closed feet."""
 
 
 class FacadeShape(NamedTuple):
-    """What the facade's silhouette says, pixels; rows run down (P11-P18)."""
+    """Measurements in the facade's silhouette, pixels; rows run down (P11-P18)."""
 
     left: float
     right: float
@@ -46,7 +47,8 @@ class FacadeShape(NamedTuple):
 def opening_measure(
     mask: Mask, person: Observation, guide: Guide | None, facing: Facing
 ) -> tuple[Measure | None, str]:
-    """What the opening posture tells, or why this is not it; nothing once measured."""
+    """The measures of the opening posture, or why this is another posture; nothing once
+    measured."""
     if guide is not None and guide.measured:
         return None, ""
     if person.cut:
@@ -66,24 +68,24 @@ def projection_width(mask: Mask) -> tuple[float, float]:
     filled = np.flatnonzero(column)
     mean = column[filled[0] : filled[-1] + 1].mean()
     high = np.flatnonzero(column > mean)
-    if not len(high):  # all columns are alike
+    if not len(high):  # all columns have the same height
         high = filled
     return float(high[0]), float(high[-1])
 
 
 def _heights(mask: Mask) -> NDArray[np.int32]:
-    """How many pixels of each column are in a mask: its vertical projection."""
+    """Number of pixels in each column of a mask: its vertical projection."""
     counts = cv2.reduce(mask.view(np.uint8), 0, cv2.REDUCE_SUM, dtype=cv2.CV_32S)
     return np.asarray(counts[0], np.int32)
 
 
 def without_head(mask: Mask, torso_width: float) -> Mask:
-    """Closing, then opening, by a horizontal line 0.8 trunk widths long: the head goes (P14).
+    """Closing, then opening, by a horizontal line 0.8 trunk widths long: it removes the head (P14).
 
-    The mask is padded by as much on both sides: the closing joins the legs, so that the opening
+    The mask is padded by that length on both sides: the closing joins the legs, so that the opening
     keeps them.
     """
-    line = 2 * round(0.4 * torso_width) + 1  # odd, or the mask would move aside
+    line = 2 * round(0.4 * torso_width) + 1  # odd, or the mask would shift
     padded = cv2.copyMakeBorder(mask.astype(np.uint8), 0, 0, line, line, cv2.BORDER_CONSTANT)
     element = np.ones((1, line), np.uint8)
     closed = cv2.morphologyEx(padded, cv2.MORPH_CLOSE, element)
@@ -94,7 +96,7 @@ def without_head(mask: Mask, torso_width: float) -> Mask:
 def facade_shape(mask: Mask, box: Box) -> FacadeShape:
     """Trunk, head and legs of the facade (P11-P17).
 
-    The trunk's width is read again above y_c only, where legs that stand apart are not (P13).
+    The trunk's width is measured again above y_c only, where legs apart do not count (P13).
     """
     x1, x2 = projection_width(mask)
     rows = np.flatnonzero(without_head(mask, x2 - x1).any(axis=1))
@@ -116,7 +118,7 @@ def arm_angle_deg(side: str, dx: float, dy: float) -> float:
 
 
 def refusal_of(mask: Mask, box: Box) -> str:
-    """Why a silhouette is not the opening posture; empty when it is (P10)."""
+    """Why a silhouette is not the opening posture; empty where it is (P10)."""
     height, width = box.bottom + 1 - box.top, box.right + 1 - box.left
     if width < SPAN_LEAST * height:
         return "the arms are not stretched out to the sides"
@@ -134,7 +136,7 @@ def refusal_of(mask: Mask, box: Box) -> str:
 
 
 def measure_front(mask: Mask, box: Box) -> Measure:
-    """All BDPs but the trunk's depth, and where the centre of the body is, fine-tuned (P12-P20)."""
+    """All BDPs but the trunk's depth, and the centre of the body, fine-tuned (P12-P20)."""
     found = facade_shape(mask, box)
     radius = (found.right - found.left) / 2
     angles = _arm_angles(mask, box, found)
@@ -168,11 +170,11 @@ def measure_front(mask: Mask, box: Box) -> Measure:
 
 
 def measure_side(mask: Mask, box: Box) -> Measure:
-    """The trunk's half depth as the flank view shows it (P21).
+    """The trunk's half depth from the flank view (P21).
 
-    Read above y_c alone, as the width in the facade is (P13): legs that stand apart or before one
-    another would hide the trunk's edges. This view finds no shoulders, so y_c is where the
-    thesis's proportions have it.
+    Measured above y_c alone, like the width in the facade (P13): legs apart or before one another
+    would hide the trunk's edges. This view shows no shoulders, so y_c comes from the thesis's
+    proportions.
     """
     height = box.bottom + 1 - box.top
     x1, x2 = projection_width(mask[: box.top + max(1, round(CENTRE_SHARE * height))])
@@ -216,7 +218,7 @@ def _arm_lengths(mask: Mask, box: Box, found: FacadeShape) -> tuple[float, float
 
 
 def _arm_thickness(mask: Mask, found: FacadeShape, box: Box) -> float:
-    """Median height of the columns that only arms fill: where fine tuning starts (P20)."""
+    """Median height of the columns that only arms fill: the start of fine tuning (P20)."""
     column = _heights(mask)
     arms = np.concatenate(
         [column[box.left : int(found.left)], column[int(found.right) + 1 : box.right + 1]]

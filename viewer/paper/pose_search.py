@@ -39,17 +39,17 @@ FLANK_ANGLES: Final = ("r_shoulder_x", "l_shoulder_x", *SQUAT_ANGLES)
 
 
 class Found(NamedTuple):
-    """What a view found itself at one frame."""
+    """One view's own result for a frame."""
 
     facing: Facing
-    """What it was held to see."""
+    """The vote on its facing."""
     angles_deg: dict[str, float]
-    """What it searched for."""
+    """The searched pose."""
     squatting: bool
 
 
 class State(NamedTuple):
-    """What a search hands to the next frame's."""
+    """The state from one frame's search to the next."""
 
     viewer: ViewerNumber
     rotation: NDArray[np.float64]
@@ -57,15 +57,15 @@ class State(NamedTuple):
     settings: SearchSettings
     method: Method
     vote: Facing
-    """What the view takes itself for."""
+    """Facing that the view votes for."""
     found: Found | None = None
-    """At the frame before; None: it had no person."""
+    """Result of the frame before; None: it had no person."""
 
 
 def init(
     viewer: ViewerNumber, camera: Camera | None, settings: SearchSettings, method: Method
 ) -> State:
-    """Nothing found yet: viewer 1 starts as the facade, viewer 2 as the flank (P47)."""
+    """The initial state: viewer 1 starts as the facade, viewer 2 as the flank (P47)."""
     facing: Facing = "facade" if viewer == 1 else "flank"
     return State(viewer, rotation_of(camera, viewer), settings, method, facing)
 
@@ -73,13 +73,13 @@ def init(
 def step(
     state: State, person: Observation, mask: Mask, guide: Guide | None
 ) -> tuple[State, Observation]:
-    """The person of one silhouette with the pose that is found in it.
+    """The person of one silhouette with the pose found in it.
 
     Args:
         state: From `init` or the step before.
-        person: As seen so far.
+        person: The person without a pose.
         mask: (H, W) the silhouette.
-        guide: What the integrator made of the frame before; None at the start.
+        guide: The integrator's guide after the frame before; None at the start.
     """
     known = expected_body(guide, state.viewer)
     facing = state.vote if guide is None else guide.facing[state.viewer - 1]
@@ -110,17 +110,17 @@ def step(
 
 
 def _found(facing: Facing, angles_deg: dict[str, float], squatting: bool) -> Found:
-    """What to go on from: the facade looks for theta_X of legs in squats alone (P33)."""
+    """The start of a search: the facade searches theta_X of legs in squats alone (P33)."""
     if facing == "facade" and not squatting:
         angles_deg = {n: value for n, value in angles_deg.items() if n not in SQUAT_ANGLES}
     return Found(facing, angles_deg, squatting)
 
 
 def _expected(state: State, mask: Mask, known: ExpectedBody, facing: Facing) -> PosedModel:
-    """The model where and how it is expected.
+    """The model at its predicted place and pose.
 
-    As printed each view goes on from the angles that it found itself (L1): the fused pose has legs
-    at rest wherever the facade lifts none (P53), and a search from there never meets a kick.
+    As printed each view starts from its own angles (L1): the fused pose has legs at rest wherever
+    the facade lifts none (P53), and a search from there never finds a kick.
     """
     pose, before = np.array(known.pose), state.found
     pose[:3] = 0.0
@@ -131,9 +131,9 @@ def _expected(state: State, mask: Mask, known: ExpectedBody, facing: Facing) -> 
 
 
 def _at_rest(state: State, mask: Mask, person: Observation, guide: Guide | None) -> PosedModel:
-    """The model at rest, laid into the silhouette's box: nothing is known of its pose.
+    """The model at rest, fitted into the silhouette's box: its pose is unknown.
 
-    The body is the guide's if one was known before, else the thesis's proportions (T4).
+    The body of the guide if one was known before, else the thesis's proportions (T4).
     """
     bdp = thesis_bdp(1.0) if guide is None or guide.bdp is None else guide.bdp
     facing = state.vote if guide is None else guide.facing[state.viewer - 1]
@@ -151,7 +151,7 @@ def _at_rest(state: State, mask: Mask, person: Observation, guide: Guide | None)
 def _voted(
     state: State, mask: Mask, model: PosedModel, known: ExpectedBody | None
 ) -> tuple[State, float, tuple[float, float]]:
-    """W_u-body and this view's vote; before a guide the start stands (P24-P26, P47)."""
+    """W_u-body and this view's vote; without a guide the start's facing (P24-P26, P47)."""
     if known is None:
         return state, 0.0, (0.0, 0.0)
     torso_px = known.bdp.torso.height * known.scale_px_per_m
@@ -163,7 +163,7 @@ def _voted(
 def _limbs(
     state: State, model: PosedModel, known: ExpectedBody | None, facing: Facing
 ) -> tuple[PosedModel, bool]:
-    """Arms, then legs, as this facing sees them (P30-P35)."""
+    """Arms, then legs, as visible in this facing (P30-P35)."""
     settings, method, wide = state.settings, state.method, known is None
     if facing == "facade":
         model = facade_arms(model, settings, wide, method)

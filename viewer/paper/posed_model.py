@@ -1,4 +1,4 @@
-"""The posed model as one viewer sees it: scaled orthography around the navel."""
+"""The posed model in one view: scaled orthography around the navel."""
 
 from typing import NamedTuple
 
@@ -23,7 +23,7 @@ class PosedModel(NamedTuple):
     """The silhouette, packed (H, words)."""
     seen_px: int
     width: int
-    """Of the picture, pixels."""
+    """Width of the picture, pixels."""
     body: Vector
     pose: Vector
     """The 25 motion parameters; the position is 0, because `view` holds the place in the
@@ -34,16 +34,16 @@ class PosedModel(NamedTuple):
 
 
 class Turn(NamedTuple):
-    """One angle that a search turns, and what goes along."""
+    """One angle of a search, and the parameters that follow it."""
 
     step: Vector
-    """(25,): how much each pose parameter moves with the angle."""
+    """(25,): change of each pose parameter with the angle."""
     at: int
-    """The pose parameter that holds the angle itself."""
+    """Index in the pose of the angle itself."""
     moving: int
     """Limbs that move, as bits."""
     parts: tuple[tuple[int, float], ...]
-    """What of `step` is not 0: (pose parameter, factor)."""
+    """The nonzero entries of `step`: (pose parameter, factor)."""
 
 
 def turn(limbs: tuple[int, ...], **coupled: float) -> Turn:
@@ -63,9 +63,9 @@ class SearchRange(NamedTuple):
     stop_deg: int
     """Where the search stops."""
     limits_deg: tuple[float, float]
-    """Of the joint, or of this posture (P31)."""
+    """Limits of the joint, or of this posture (P31)."""
     wide: bool = False
-    """Nothing is known of the angle: search windows that tile the whole range."""
+    """True where the angle is unknown: search windows then tile the whole range."""
 
 
 def searched(
@@ -75,9 +75,9 @@ def searched(
 
     Args:
         model: The model so far.
-        how: What turns.
-        within: Where it is searched.
-        least_gain: What must be added to the model's score for the angle to change.
+        how: The angle to turn.
+        within: Where to search it.
+        least_gain: Smallest gain of the model's score for which the angle changes.
     """
     width_deg, stop_deg, (low, high), wide = within
     centres = np.arange(low + width_deg / 2, high, width_deg) if wide else [model.pose[how.at]]
@@ -115,7 +115,7 @@ def matched(model: PosedModel) -> PosedModel:
 
 
 def view_at(rotation: NDArray[np.float64], px_per_m: float, root_px: tuple[float, float]) -> Vector:
-    """Scaled orthography: the kernel's view that shows the navel at a pixel (section 3.2)."""
+    """Scaled orthography: the kernel's view with the navel at a given pixel (section 3.2)."""
     view = np.zeros(VIEW)
     view[:SHIFT] = rotation.ravel()
     view[FOCAL_X] = view[FOCAL_Y] = px_per_m
@@ -125,12 +125,12 @@ def view_at(rotation: NDArray[np.float64], px_per_m: float, root_px: tuple[float
 
 
 def rotation_of(camera: Camera | None, viewer: ViewerNumber) -> NDArray[np.float64]:
-    """World to camera: the calibrated one, or the paper's for this viewer (C1)."""
+    """World to camera: the calibrated rotation, or the paper's for this viewer (C1)."""
     return np.array(PAPER_ROTATIONS[viewer - 1] if camera is None else camera.R)
 
 
 def yaw_of(facing: Facing, viewer: ViewerNumber) -> float:
-    """Yaw of the trunk, degrees, that a facing of this viewer stands for (P49)."""
+    """Yaw of the trunk, degrees, for a facing in this viewer (P49)."""
     return YAW_DEG[0 if (facing == "facade") == (viewer == 1) else 1]
 
 

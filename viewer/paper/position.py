@@ -1,4 +1,4 @@
-"""Where the body is in the picture: shifts of the drawn model (section 3.2)."""
+"""The body's place in the picture, by shifts of the drawn model (section 3.2)."""
 
 from typing import Final
 
@@ -12,19 +12,19 @@ from common.raster.kernel import CENTRE_X, CENTRE_Y, draw_limbs, score
 from viewer.paper.posed_model import PosedModel
 
 SHIFTS_PX: Final = (0, -1, 1, -2, 2, -5, 5)
-"""The printed candidates and the incumbent, the least first: ties stay (P27)."""
+"""The printed candidates and the present place, the smallest first: ties stay (P27)."""
 
 UPRIGHT: Final = 0b111111
-"""Trunk, head and legs. The arms still have the angles of the frame before, and pull the body after
-them when they move (by 60 mm while they were lowered)."""
+"""Limbs drawn: trunk, head and legs. The arms still have the angles of the frame before, and
+would pull the body after them (by 60 mm while they were lowered)."""
 
 MOST_PASSES: Final = 3
-"""One pass leaves a pixel at shifts of 3, 4, 6 and more (P27)."""
+"""Number of passes: one leaves an error of a pixel at shifts of 3, 4, 6 and more (P27)."""
 
 
 @compiled
 def extent(bits: Bits) -> tuple[int, int, int, int]:
-    """Where packed rows have pixels: first row and one past the last, words likewise."""
+    """Extent of packed pixels: first row and one past the last, words likewise."""
     top, bottom, begin, end = bits.shape[0], 0, bits.shape[1], 0
     for row in range(bits.shape[0]):
         for word in range(bits.shape[1]):
@@ -38,13 +38,13 @@ def extent(bits: Bits) -> tuple[int, int, int, int]:
 def shifted_counts(
     model: Bits, within: tuple[int, int, int, int], seen: Bits, width: int, right: int, down: int
 ) -> tuple[int, int]:
-    """Pixels of a shifted model inside the picture, and those of them that are seen.
+    """Number of pixels of a shifted model inside the picture, and of those that are seen.
 
     Args:
         model: Packed rows (H, words).
-        within: Its extent.
+        within: Extent of the model.
         seen: The silhouette, packed alike.
-        width: Of the picture, pixels.
+        width: Width of the picture, pixels.
         right: Shift to the right, pixels, less than 64 either way.
         down: Shift downwards.
     """
@@ -98,11 +98,11 @@ def best_shift(
 
 
 def located(model: PosedModel, limbs: int = ALL_LIMBS) -> PosedModel:
-    """The model shifted to where it fits best: columns first, then rows (P27, P28).
+    """The model shifted to its best place: columns first, then rows (P27, P28).
 
     Args:
         model: The model so far.
-        limbs: What of it is drawn, as bits.
+        limbs: The limbs drawn, as bits.
     """
     drawn = np.zeros_like(model.seen)
     draw_limbs(model.body, model.pose, model.view, limbs, model.width, drawn)

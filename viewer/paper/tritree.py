@@ -13,14 +13,14 @@ from common.raster.kernel import draw_placed, limb_primitive, score
 from common.raster.row_spans import PRIMITIVE, Columns, draw, gain, spans, undraw
 
 MOST_STAGES = 16
-"""A window of 2^16 stops would still end: the guard that M14 asks for."""
+"""Largest number of stages: a window of 2^16 stops still ends (the guard of M14)."""
 
 
 LOW, HIGH, LEFT, MIDDLE, RIGHT, ROUNDS, BEST_ANGLE, BEST_SCORE, MATCHES = range(9)
-"""What a search knows: its window, the scores at its ends and its middle (NaN: to be matched), how
-often it was narrowed, and the best that it met."""
+"""Layout of a search: its window, the scores at its ends and its middle (NaN: not matched yet),
+the number of stages, and the best probe so far."""
 MIDDLE_FIRST = (MIDDLE, LEFT, RIGHT)
-"""Order of the probes: what is met first wins a tie, and the middle is the previous angle."""
+"""Order of the probes: the first wins a tie, and the middle is the previous angle."""
 
 
 Bound = TypeVar("Bound", int, float)
@@ -28,20 +28,20 @@ Bound = TypeVar("Bound", int, float)
 
 
 class Found(NamedTuple):
-    """The best angle that a search met."""
+    """The best angle of a search."""
 
     angle_deg: float
     score: float
     matches: int
-    """How often the score was computed; the paper's measure of cost."""
+    """Number of score computations; the paper's measure of cost."""
 
 
 @compiled
 def window(previous_deg: float, width_deg: int, low_deg: float, high_deg: float) -> tuple[int, int]:
-    """Where to search: around the previous angle, pushed inside the joint's range.
+    """The search window: around the previous angle, shifted into the joint's range.
 
-    Bounds are whole degrees: with raw float bounds a stage more appears and matches are not
-    found again (P36). A range narrower than the window is searched from its lower end.
+    Bounds are whole degrees: with raw float bounds there is a stage more, and no match is reused
+    (P36). A range narrower than the window is searched from its lower end.
     """
     half = width_deg // 2
     low, high = whole(low_deg), whole(high_deg)
@@ -59,7 +59,7 @@ def whole(value: float) -> int:
 def narrowed(
     low: Bound, high: Bound, left: float, middle: float, right: float
 ) -> tuple[Bound, Bound, float, float, float]:
-    """The half window around the winner, with the scores that it inherits (NaN: to be matched).
+    """The half window around the winner, with the scores that it inherits (NaN: not matched yet).
 
     A tie goes to the middle, then to the left: deterministic, and close to the previous angle.
     """
@@ -73,7 +73,7 @@ def narrowed(
 
 @compiled
 def begun(low: float, high: float) -> Floats:
-    """A search of a window that has matched nothing: what LOW to MATCHES name."""
+    """The layout LOW to MATCHES of a window before any match."""
     tree = np.full(MATCHES + 1, np.nan)
     tree[LOW], tree[HIGH], tree[ROUNDS] = low, high, 0.0
     tree[BEST_ANGLE], tree[BEST_SCORE], tree[MATCHES] = 0.5 * (low + high), -1.0, 0.0
@@ -82,7 +82,7 @@ def begun(low: float, high: float) -> Floats:
 
 @compiled
 def probe(tree: Vector, stop: float) -> int:
-    """Which of a window's ends and its middle to match next: LEFT, MIDDLE or RIGHT; -1: none.
+    """Which end or middle of a window to match next: LEFT, MIDDLE or RIGHT; -1: none.
 
     Each round compares the left end, the middle and the right end of the window and keeps the
     half around the winner. The halves overlap, and the winner is always a point of the next
@@ -111,7 +111,7 @@ def angle_of(tree: Vector, which: int) -> float:
 
 @compiled
 def tell(tree: Vector, which: int, score: float) -> None:
-    """Take in what a probe matched."""
+    """Add the score of a probe."""
     tree[which] = score
     tree[MATCHES] += 1
     if score > tree[BEST_SCORE]:
@@ -157,10 +157,11 @@ def added(
     last: Columns,
     p: Vector,
 ) -> tuple[int, int]:
-    """What placed limbs add to the drawn rest: (pixels newly drawn, those that are seen).
+    """The pixels that placed limbs add to the drawn rest: (number added, number of those that are
+    seen).
 
     Each limb counts over the rest and the limbs before it, so all but the last are drawn, into
-    `scratch`, which is a copy of the rest before and after.
+    `scratch`, which equals the rest before and after.
     """
     height = seen.shape[0]
     highest, lowest = height, 0
@@ -196,11 +197,11 @@ def search(
     Args:
         seen: The silhouette, packed (H, words).
         seen_px: Its number of pixels.
-        width: Of the picture, pixels.
+        width: Width of the picture, pixels.
         body: Body vector.
-        pose: The 25 motion parameters; left as they were.
-        view: The kernel's view.
-        step: (25,): the angle moves the pose to pose * (step == 0) + angle * step, so that one
+        pose: The 25 motion parameters; not changed.
+        view: View vector of the kernel.
+        step: (25,): the angle sets the pose to pose * (step == 0) + angle * step, so that one
             search can couple joints (knee = -2 hip, P34).
         moving: Limbs that move, as bits; the rest is drawn once.
         low: Bounds of the window, whole degrees; `high` likewise.

@@ -1,1 +1,1 @@
-"""The stick body of one camera: the thesis's algorithms 1 to 6, and a search that follows it."""
+"""The stick body of one camera: the thesis's algorithms 1 to 6, and a tracking search."""

@@ -12,13 +12,13 @@ from common.method import Method
 from common.raster.similarity import Mask
 
 CORNER_DISTANCE: Final = 4
-"""Points on either side of an elbow at least: minimumCornerDistance."""
+"""Fewest points on either side of an elbow: minimumCornerDistance."""
 CORNER_DEG: Final = 10.0
-"""A bend must be larger: minimumCornerAngleDifference."""
+"""Smallest bend at an elbow, degrees: minimumCornerAngleDifference."""
 STEADY_SHARE: Final = 0.25
-"""Points on either side of a steady elbow at least, as a share of the curve (T16)."""
+"""Fewest points on either side of a steady elbow, as a share of the curve (T16)."""
 STEADY_DEG: Final = 15.0
-"""Bend of a steady elbow at least: noise of half a pixel reaches 10 degrees (T16)."""
+"""Smallest bend of a steady elbow: noise of half a pixel reaches 10 degrees (T16)."""
 
 Curve = NDArray[np.float64]
 """(n, 2): x and y, px, from the trunk outwards."""
@@ -30,12 +30,13 @@ class ArmAngles(NamedTuple):
     upper: float
     lower: float
     corner: int
-    """Which point of the curve is the elbow; -1: none is seen, the arm is straight."""
+    """Index of the elbow in the curve; -1: none is visible, the arm is straight."""
 
 
 @compiled
 def outer_runs(mask: Mask) -> NDArray[np.int64]:
-    """Where scan lines are inside a silhouette (H, W): how often, and their outermost runs.
+    """Intersections of scan lines with a silhouette (H, W): the number of runs, and the outermost
+    ones.
 
     Returns:
         (H, 5): number of runs, then first pixel and one past the last of the first and of the last.
@@ -73,7 +74,7 @@ def _line(curve: Floats) -> tuple[float, float]:
 
 
 def line_angle_deg(curve: Curve) -> float:
-    """FindAngle: where a curve leads, in [0, 360), by the least squared distances (T14)."""
+    """FindAngle: direction of a curve, in [0, 360), by least squared distances (T14)."""
     return float(_line(curve)[0])
 
 
@@ -100,9 +101,9 @@ def arm_curve(mask: Mask, trunk: tuple[int, int, int], reach_px: int, side: int)
 
 
 def lower_leg_curves(mask: Mask, top: int, bottom: int) -> tuple[Curve, Curve, list[bool]]:
-    """Middles of both lower legs in every scan line, and where these are one (T14, T17).
+    """Middles of both lower legs in every scan line, and where these coincide (T14, T17).
 
-    Where there is one run, it is both legs, a half each.
+    A single run is both legs, a half each.
 
     Returns:
         (left curve, right curve, for each line with a run: whether the legs share it).
@@ -126,8 +127,8 @@ def turn_deg(one_deg: float, other_deg: float) -> float:
 
 @compiled
 def elbow_corner(curve: Floats) -> int:
-    """Algorithm 4: the point that parts a curve into the two lines of the most different
-    directions; -1: nowhere do they differ by more than CORNER_DEG.
+    """Algorithm 4: the point that splits a curve into the two lines of most different directions;
+    -1: they nowhere differ by more than CORNER_DEG.
 
     The printed loop guards one end of the curve. M21 guards both, and takes angles on the circle.
     """
@@ -143,7 +144,7 @@ def elbow_corner(curve: Floats) -> int:
 def steady_corner(curve: Floats) -> int:
     """The point at which two lines of different directions fit a curve best; -1: none.
 
-    A departure from algorithm 4, whose largest difference noise at an end decides (T16).
+    A departure from algorithm 4, whose largest difference depends on noise at an end (T16).
     """
     guard = max(CORNER_DISTANCE, math.ceil(STEADY_SHARE * len(curve)))
     best, least = -1, math.inf
@@ -158,7 +159,7 @@ def arm_angles(curve: Curve, method: Method) -> ArmAngles:
     """Algorithm 3: one angle for both halves of a straight arm, else one for each (T15).
 
     Args:
-        curve: Of the arm.
+        curve: The arm's curve.
         method: How its elbow is found.
     """
     corner = int(steady_corner(curve) if method.steady_elbows else elbow_corner(curve))
@@ -169,9 +170,9 @@ def arm_angles(curve: Curve, method: Method) -> ArmAngles:
 
 
 def knees_crossed(merged: list[bool]) -> bool:
-    """Algorithm 5: crossed where the lines begin as one run and go on as two, to the end (T17).
+    """Algorithm 5: crossed where the lines begin as one run and continue as two, to the end (T17).
 
-    It also fires for legs apart that touch at the knee, and misses two, one, two.
+    It also fires for legs apart that touch at the knee, and misses the sequence two, one, two.
     """
     until = merged.index(False) if False in merged else len(merged)
     return 0 < until < len(merged) and not any(merged[until:])

@@ -1,4 +1,4 @@
-"""The silhouette at its fixed size: cost and angles do not depend on the camera's pixels (T9)."""
+"""The silhouette at a fixed size: cost and angles do not depend on the camera's pixels (T9)."""
 
 from typing import Final, NamedTuple
 
@@ -10,32 +10,32 @@ from common.body.stick_body import STATURE, X, Y
 from common.raster.similarity import Mask
 
 STATURE_PX: Final = 100
-"""Stature of the body in the normalised silhouette."""
+"""Stature of the body in the normalised silhouette, pixels."""
 NORMAL_SIZE: Final = (128, 160)
-"""Width and height of a normalised silhouette, pixels: arms stretched out or raised fit in, and a
+"""Width and height of a normalised silhouette, pixels: stretched or raised arms fit in, and a
 row is two words."""
 INSIDE: Final = 0.5
-"""A pixel belongs to the person who covers half of it."""
+"""Share of a pixel that the person must cover."""
 
 
 class Normal(NamedTuple):
-    """A silhouette at its fixed size, and where it lies in the given one."""
+    """A silhouette at the fixed size, and its place in the original."""
 
     mask: Mask
     scale: float
-    """Pixels here for one pixel there."""
+    """Pixels here per pixel of the original."""
     corner: Vector
-    """What of the given picture is at the corner of this one, (2,) px."""
+    """Place in the original of this picture's corner, (2,) px."""
 
     def inward(self, pose: Vector) -> Vector:
-        """A stick pose of the given picture, here."""
+        """A stick pose of the original, in this picture."""
         pose = pose.copy()
         pose[[X, Y]] = (pose[[X, Y]] - self.corner) * self.scale
         pose[STATURE] *= self.scale
         return pose
 
     def outward(self, pose: Vector) -> Vector:
-        """A stick pose of this picture, in the given one."""
+        """A stick pose of this picture, in the original."""
         pose = pose.copy()
         pose[[X, Y]] = pose[[X, Y]] / self.scale + self.corner
         pose[STATURE] /= self.scale
@@ -47,7 +47,7 @@ def normalised(mask: Mask, stature_px: float) -> Normal:
 
     Args:
         mask: (H, W), with a person in it.
-        stature_px: Height of the body standing upright, in its pixels (T20).
+        stature_px: Height that the body would have standing upright, in pixels of the mask (T20).
     """
     rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
     scale = STATURE_PX / stature_px
@@ -62,16 +62,16 @@ def normalised(mask: Mask, stature_px: float) -> Normal:
 
 
 def _shares(first: float, step: float, cells: int, pixels: int) -> NDArray[np.float32]:
-    """How much of each cell of a row each pixel covers, (cells, pixels).
+    """Share of each cell of a row that each pixel covers, (cells, pixels).
 
-    A pixel that is cut into several changes nothing, so the same shape in smaller pixels gives the
+    Splitting a pixel into several changes nothing, so the same shape in smaller pixels gives the
     same cells.
 
     Args:
-        first: Where the first cell begins, from the edge of the first pixel on.
+        first: Start of the first cell, from the edge of the first pixel on.
         step: Pixels a cell.
-        cells: How many.
-        pixels: How many.
+        cells: Number of cells.
+        pixels: Number of pixels.
     """
     begin = first + step * np.arange(cells)[:, None]
     pixel = np.arange(pixels)

@@ -1,4 +1,4 @@
-"""How tall a person would stand at every place of a video: the scale of a single view (T20)."""
+"""The height of a standing person at every place of a video: the scale of a single view (T20)."""
 
 from collections.abc import Sequence
 from typing import Final, NamedTuple
@@ -9,30 +9,30 @@ from common.body.body import Vector
 from common.raster.similarity import Mask
 
 MIDDLE_SHARE: Final = 0.05
-"""Half the width, in heights, of the column in which the head is looked for: raised arms pass."""
+"""Half width, in heights, of the column in which the head is searched: raised arms are outside."""
 UPRIGHT: Final = 0.75
-"""Of the heights of a clip, the one that so many stay below: most of them stand, few jump."""
+"""Quantile of a clip's heights: most of them stand, few jump."""
 NEARER: Final = 0.15
-"""Feet that move by this share of the height show that the person comes nearer."""
+"""Motion of the feet, as a share of the height, that shows a change of distance."""
 MOST_SAMPLES: Final = 300
-"""Most heights that the slope is fitted to."""
+"""Largest number of heights that the slope is fitted to."""
 
 
 class Standing(NamedTuple):
-    """The height of a person upright, by the row on which they stand."""
+    """Height of an upright person, by the row on which they stand."""
 
     sole_row: float
-    """Row below the feet, in most frames."""
+    """Median row below the feet."""
     tall_px: float
     """Height there."""
     level_px: float
-    """Height where the row is 0; what a row more adds is `slope`."""
+    """Height at row 0; `slope` is the gain per row."""
     slope: float
     least_px: float
-    """No frame is lower: what squats is no measure."""
+    """Smallest height that counts: a squat is no measure."""
 
     def at(self, sole_row: float) -> float:
-        """Height in pixels of a person whose feet are on a row."""
+        """Height in pixels of a person with the feet on a row."""
         return max(self.level_px + self.slope * sole_row, self.least_px)
 
 
@@ -47,10 +47,10 @@ def standing_rows(mask: Mask) -> tuple[float, float]:
 
 
 def standing_of(rows: Sequence[tuple[float, float]], whole: Sequence[bool]) -> Standing | None:
-    """Height of the person standing upright, by all silhouettes of a video; None without any.
+    """Height of the standing person, from all silhouettes of a video; None without any.
 
-    One height of the video holds for all frames, not each frame's own: a squat would shrink it.
-    Where the feet come nearer along the floor it grows with their row.
+    One height holds for all frames of the video, not each frame's own: a squat would shrink it.
+    Where the feet approach along the floor it grows with their row.
 
     Args:
         rows: (n,) `standing_rows` of each silhouette.
@@ -72,9 +72,9 @@ def standing_of(rows: Sequence[tuple[float, float]], whole: Sequence[bool]) -> S
 
 
 def _slope(soles: Vector, heights: Vector) -> float:
-    """How much taller a row nearer makes who stands (Theil and Sen: a median of slopes)."""
+    """Gain of a standing person's height per row (Theil and Sen: a median of slopes)."""
     from scipy.stats import theilslopes
 
     some = slice(None, None, max(1, len(soles) // MOST_SAMPLES))
-    with np.errstate(invalid="ignore"):  # in its error bar, which nobody reads
+    with np.errstate(invalid="ignore"):  # in its confidence interval, which is not used
         return float(theilslopes(heights[some], soles[some])[0])

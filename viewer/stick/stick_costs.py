@@ -1,4 +1,4 @@
-"""What a stick pose costs before it is matched: haste, unseen depth, joints bent wrongly."""
+"""Costs of a stick pose besides its match: fast motion, unseen depth, impossible bends."""
 
 from typing import Final
 
@@ -22,25 +22,26 @@ from common.compiled import compiled
 ) = range(10)
 
 COSTS: Final = np.array([0.006, 0.06, 0.02, 0.02, 0.2, 10.0, 0.01, 0.012, 1.0, 0.5])
-"""In S: for a limb to swing by 60 degrees (its vector's change of 1) since it was expected; for
-trunk, legs and arms to leave the plane of the picture; for breadth and for stature to change by all
-they are; for the trunk to lean by 90 degrees; for an elbow to bend in the plane by 90, or a knee
-where the trunk shows its breadth; for a knee or foot seen from the front to cross to the other side
-by a stature. Chosen on two performers, each halved and doubled (docs/measurements.md)."""
+"""Weights of these costs, in S: for a limb to swing by 60 degrees (a change of 1 in its vector)
+since its prediction; for trunk, legs and arms to leave the plane of the picture; for breadth and
+for stature to change by all they are; for the trunk to lean by 90 degrees; for an elbow to bend
+in the plane by 90, or a knee where the trunk shows its breadth; for a knee or foot seen from the
+front to cross to the other side by a stature. Chosen on two performers, each halved and doubled
+(docs/measurements.md)."""
 
 TILTED: Final = 0.15
-"""1 - ratio^2 at which a limb's leaving the plane has half its full cost (23 degrees): what cannot
-be seen stays in the plane, what can be seen is free to turn further."""
+"""1 - ratio^2 at which a limb's leaving the plane has half its full cost (23 degrees): what
+cannot be seen stays in the plane, what can be seen is free to turn further."""
 
 STIFF_NECK: Final = 3.0
-"""How much more it costs a neck to bend in the plane than an elbow."""
+"""Cost of a neck's bend in the plane, over an elbow's."""
 
 
 @compiled
 def limb_cost(pose: Vector, expected: Vector, limb: int, trust: float, costs: Vector) -> float:
-    """What a limb's place costs: how far it turned in space since it was expected, and its depth.
+    """Cost of a limb's place: its turn in space since the prediction, and its depth.
 
-    Both signs of its depth are alike here, so that is how far it is from the nearer one.
+    The sign of the depth does not matter here, so the turn is taken to the nearer one.
     """
     a, b = np.radians(pose[ANGLE + limb]), np.radians(expected[ANGLE + limb])
     r, e = min(pose[RATIO + limb], 1.0), min(expected[RATIO + limb], 1.0)
@@ -54,7 +55,7 @@ def limb_cost(pose: Vector, expected: Vector, limb: int, trust: float, costs: Ve
 
 @compiled
 def bend_cost(pose: Vector, upper: int, costs: Vector) -> float:
-    """What the bend of an elbow or a knee costs, as far as it lies in the plane."""
+    """Cost of the bend of an elbow or a knee, as far as it lies in the plane."""
     bend = np.radians(pose[ANGLE + upper + 2] - pose[ANGLE + upper])
     share = costs[BEND] * pose[RATIO + upper] * pose[RATIO + upper + 2] * (1.0 - np.cos(bend))
     return share if upper >= 6 else share * pose[BREADTH]
@@ -62,7 +63,7 @@ def bend_cost(pose: Vector, upper: int, costs: Vector) -> float:
 
 @compiled
 def cross_cost(ends: Floats, pose: Vector, costs: Vector) -> float:
-    """What knees and feet on the wrong sides cost."""
+    """Cost of knees and feet on the wrong sides."""
     wrong = 0.0
     for limb in (2, 4):
         wrong += max(0.0, ends[limb, 2] - ends[limb + 1, 2])
@@ -71,7 +72,7 @@ def cross_cost(ends: Floats, pose: Vector, costs: Vector) -> float:
 
 @compiled
 def pose_cost(pose: Vector, ends: Floats, expected: Vector, trust: float, costs: Vector) -> float:
-    """What a whole pose costs; `ends` are its segments."""
+    """Cost of a whole pose; `ends` are its segments."""
     wider, taller = pose[BREADTH] - expected[BREADTH], pose[STATURE] / expected[STATURE] - 1.0
     total = costs[BREADTH_CHANGE] * wider * wider + costs[STATURE_CHANGE] * taller * taller
     thicker = pose[GIRTH] - expected[GIRTH]

@@ -1,4 +1,4 @@
-"""The stick body of one silhouette: joints, foreshortening and what is hidden (T10-T18)."""
+"""The stick body of one silhouette: joints, foreshortening and hidden segments (T10-T18)."""
 
 from typing import NamedTuple
 
@@ -33,18 +33,19 @@ _RIGHT, _LEFT = (
 
 
 class Stick(NamedTuple):
-    """A fitted stick body, in the pixels of the silhouette that was given."""
+    """A fitted stick body, in the pixels of the given silhouette."""
 
     pose: Vector
     """(POSE_SIZE,), see common.body.stick_body."""
     joints_px: NDArray[np.float64]
     """(15, 2), JOINT_NAMES; r is on the left of the picture (T10)."""
     hidden: NDArray[np.bool_]
-    """(10,) of LIMBS: what the silhouette does not show, for it lies over the rest of the body."""
+    """(10,) of LIMBS: segments that the silhouette does not show, because they lie over the rest
+    of the body."""
     score: float
     """S of the drawn body and the silhouette, at the normalised size (eq. 3.3)."""
     evaluations: int
-    """How many times a model was matched."""
+    """Number of matches."""
 
     @property
     def ratios(self) -> Vector:
@@ -53,12 +54,12 @@ class Stick(NamedTuple):
 
     @property
     def breadth(self) -> float:
-        """How much of its breadth the trunk shows."""
+        """Share of its breadth that the trunk shows."""
         return float(self.pose[BREADTH])
 
     @property
     def stature_px(self) -> float:
-        """Height that the body would have standing upright."""
+        """Height that the body would have standing upright, pixels."""
         return float(self.pose[STATURE])
 
 
@@ -69,16 +70,16 @@ class NoFit(ValueError):
 def fit(mask: Mask, before: Vector | None, stature_px: float, method: Method) -> Stick:
     """The stick body of a silhouette.
 
-    The thesis's own way looks at every frame by itself, as printed; ours follows the body.
+    The thesis's method treats every frame separately, as printed; ours tracks the body.
 
     Args:
         mask: (H, W), of any size: it is normalised here (T9).
-        before: The stick pose that is expected, in its pixels; None at the start.
+        before: The predicted stick pose, in its pixels; None at the start.
         stature_px: Height of the body standing upright, in pixels of the mask (T20).
         method: How to fit.
 
     Raises:
-        NoFit: When the mask is empty, or nothing of its stature, or that is no height.
+        NoFit: When the mask is empty, contains nothing of its stature, or the stature is invalid.
     """
     if not mask.any() or not stature_px > 0.0:
         raise NoFit(f"no body to fit: {mask.sum()} pixels, a stature of {stature_px}")
@@ -98,13 +99,13 @@ def fit(mask: Mask, before: Vector | None, stature_px: float, method: Method) ->
 
 
 def expected(body: Vector, pose: Vector, view: Vector, stature_px: float) -> Vector:
-    """The stick pose, (POSE_SIZE,), that a posed body is seen as, r on the left (T10).
+    """The stick pose, (POSE_SIZE,), of a posed body in a view, r on the left (T10).
 
     Args:
         body: Body vector.
         pose: (25,)
-        view: Scaled orthography, as `view_at` gives it.
-        stature_px: Height of the body standing upright, in that picture.
+        view: Scaled orthography, as `view_at` returns it.
+        stature_px: Height that the body would have standing upright, in that picture.
     """
     across = joints(body, pose) - pose[:3]
     scale_px, root_px = view[FOCAL_X], view[[CENTRE_X, CENTRE_Y]]

@@ -1,4 +1,4 @@
-"""The stick body of a view that is alone, in its report (thesis 3.1.4)."""
+"""The stick body of a single view, in its report (thesis 3.1.4)."""
 
 import msgspec
 import numpy as np
@@ -22,14 +22,14 @@ def with_stick(
     standing: Standing | None,
     method: Method,
 ) -> Observation:
-    """The person with the stick body that fits their silhouette; as it is where none does.
+    """The person with the stick body that fits their silhouette; unchanged where none does.
 
     Args:
-        person: As seen so far.
+        person: The person without a stick body.
         mask: (H, W) the silhouette.
         rotation: World to camera, (3, 3).
         known: The body that is followed.
-        standing: How tall the person stands; None: as tall as is expected, or as is seen.
+        standing: Height of the standing person; None: as predicted, or as seen.
         method: How to fit.
     """
     stature_px, expected = float(person.box.bottom + 1 - person.box.top), None

@@ -1,4 +1,5 @@
-"""The search of a stick pose for its best match: limbs by beam, then every number by tritree."""
+"""The search of a stick pose for its best match: limbs by beam search, then every number by
+tritree."""
 
 from typing import Final, NamedTuple
 
@@ -16,42 +17,42 @@ from viewer.paper.tritree import MOST_STAGES, narrowed
 from viewer.stick.stick_costs import bend_cost, cross_cost, limb_cost, pose_cost
 
 BEAM: Final = 6
-"""Upper limbs that are kept while their lower limbs are tried."""
+"""Number of upper-limb candidates that are kept while their lower limbs are tried."""
 UPPER_STEP_DEG, LOWER_STEP_DEG = 15.0, 20.0
 SHORTENINGS: Final = np.array([1.0, 0.8, 0.5, 0.2])
-"""Ratios that the beam tries: 0, 37, 60 and 78 degrees out of the picture's plane."""
+"""Ratios that the beam search tries: 0, 37, 60 and 78 degrees out of the picture's plane."""
 NOTHING: Final = -9.0
-"""Below every worth."""
+"""A worth below any possible one."""
 
 
 class Task(NamedTuple):
-    """What is fitted to what; its members are also what the compiled functions read."""
+    """The fit's inputs; compiled functions read its members."""
 
     lengths: Vector
     parts: Vector
     depth: float
-    """The Stickman's."""
+    """The Stickman's arrays."""
     seen: Bits
     seen_px: int
     width: int
-    """The silhouette, its pixels, and the width of the picture."""
+    """The silhouette, its number of pixels, and the width of the picture."""
     expected: Vector
-    """(POSE_SIZE,): the pose before."""
+    """(POSE_SIZE,): the predicted pose."""
     trust: float
-    """How much of the cost of turning counts: less where nothing is known."""
+    """Factor on the cost of turning: less where nothing is known."""
     costs: Vector
 
 
 Canvas = tuple[Bits, Bits, Floats, Columns, Columns, Vector]
-"""What a search draws on: the drawn rest and a scratch (H, words), the segments' ends (12, 4), the
-first and the last pixel of each row (H,), a part's primitive (PRIMITIVE,)."""
+"""Working memory of a search: the drawn rest and a scratch (H, words), the segments' ends (12,
+4), the first and the last pixel of each row (H,), a part's primitive (PRIMITIVE,)."""
 
 
 class Moves(NamedTuple):
     """Directions in which a pose is searched, one after the other."""
 
     rows: Floats
-    """(k, POSE_SIZE): what a move adds to the pose, times a whole number of its unit."""
+    """(k, POSE_SIZE): what one unit of a move adds to the pose."""
     units: Vector
     moving: NDArray[np.int64]
     """(k,) segments that move, as bits: the others are drawn once."""
@@ -62,7 +63,7 @@ class Moves(NamedTuple):
 
 @compiled
 def worth(task: Task, pose: Vector, which: int, ends: Floats, bits: Bits) -> float:
-    """S of some segments less what the pose costs; `ends` and `bits` are overwritten."""
+    """S of some segments minus the pose's cost; `ends` and `bits` are overwritten."""
     place_segments(task.lengths, pose, ends)
     bits[:] = np.uint64(0)
     draw_segments(ends, pose, task.parts, task.depth, which, task.width, bits)
@@ -74,16 +75,17 @@ def worth(task: Task, pose: Vector, which: int, ends: Floats, bits: Bits) -> flo
 def refined(
     task: Task, pose: Vector, moves: Moves, how_many: int, half: int, stop: int, which: int
 ) -> tuple[float, int]:
-    """The first moves, each in turn to its best by the overlapped tritree around where it is.
+    """The first moves, each in turn set to its best by the overlapped tritree around the present
+    value.
 
     Args:
         task: A Task.
         pose: (POSE_SIZE,), improved in place.
         moves: Moves.
-        how_many: How many of them.
+        how_many: Number of moves to use.
         half: Half the window, units.
-        stop: Its width at the end.
-        which: Segments that are drawn, as bits.
+        stop: Width of the window at the end.
+        which: The segments drawn, as bits.
 
     Returns:
         (worth, matches).
@@ -124,7 +126,7 @@ def refined(
 
 @compiled
 def _moved(trial: Vector, start: Vector, moves: Moves, k: int, by: float) -> None:
-    """Write where a move leads, kept within the bounds."""
+    """Write the pose after a move, within the bounds."""
     for n in range(POSE_SIZE):
         at = start[n] + by * moves.rows[k, n]
         trial[n] = min(max(at, moves.lows[n]), moves.highs[n])
@@ -132,7 +134,7 @@ def _moved(trial: Vector, start: Vector, moves: Moves, k: int, by: float) -> Non
 
 @compiled
 def _rows(height: int) -> tuple[NDArray[np.int32], NDArray[np.int32], Floats]:
-    """Room for the row intervals of a part, and for the part."""
+    """Working memory for the row intervals of a part, and for the part."""
     return np.empty(height, np.int32), np.empty(height, np.int32), np.empty(PRIMITIVE)
 
 
@@ -140,7 +142,7 @@ def _rows(height: int) -> tuple[NDArray[np.int32], NDArray[np.int32], Floats]:
 def _similar(
     task: Task, pose: Vector, which: int, over: Canvas, rest_px: int, rest_hit: int
 ) -> float:
-    """S of some placed segments over a drawn rest, of which the pixels and the hits are known."""
+    """S of some placed segments over a drawn rest whose pixels and hits are known."""
     rest, scratch, ends, first, last, p = over
     drawn, hit = added(
         ends, pose, task.parts, task.depth, which, task.width, rest, task.seen, scratch,
@@ -153,7 +155,7 @@ def _similar(
 def _limb_of(
     pose: Vector, limb: int, was: Vector, n: int, first_deg: float, step_deg: float
 ) -> None:
-    """Set a limb to the n-th of the beam's angles and shortenings; n = -1: to what it was."""
+    """Set a limb to the n-th of the beam's angles and ratios; n = -1: to its previous ones."""
     if n < 0:
         pose[ANGLE + limb], pose[RATIO + limb] = was[ANGLE + limb], was[RATIO + limb]
     else:
@@ -191,19 +193,19 @@ def beamed(
     bend_deg: float,
     which: int,
 ) -> int:
-    """An upper and its lower limb found together, anywhere in their ranges.
+    """An upper limb and its lower limb, searched together over their whole ranges.
 
     Args:
         task: A Task.
         pose: (POSE_SIZE,), changed in place.
         upper: The upper limb.
-        low_deg: Where it can point in the picture, to `high_deg`.
-        high_deg: See there.
-        bend_deg: How far the lower limb bends from it, either way.
-        which: Segments that are drawn, as bits.
+        low_deg: Lower end of its directions in the picture; `high_deg` is the upper one.
+        high_deg: Upper end of the directions.
+        bend_deg: Largest bend of the lower limb, either way.
+        which: The segments drawn, as bits.
 
     Returns:
-        The matches.
+        Number of matches.
     """
     lower, was = upper + 2, pose.copy()
     ends, both = np.empty((12, 4)), 1 << upper | 1 << lower
@@ -240,7 +242,7 @@ def beamed(
 
 @compiled
 def covered(task: Task, pose: Vector, shares: Vector) -> None:
-    """How much of each limb the rest of the body covers, or is covered by: (10,), written."""
+    """Share of each limb that overlaps the rest of the body: (10,), written."""
     ends, own, rest = np.empty((12, 4)), np.zeros_like(task.seen), np.zeros_like(task.seen)
     place_segments(task.lengths, pose, ends)
     for limb in range(10):

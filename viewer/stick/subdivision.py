@@ -9,7 +9,7 @@ ANGLE_DIVISIONS: Final = 8
 LEAST_STEP_DEG: Final = 1.0
 RATIO_DIVISIONS: Final = 5
 EDGE: Final = 1e-9
-"""Sums of steps must not miss an end by rounding."""
+"""Tolerance with which sums of steps still reach the end of the range."""
 
 
 def divided(
@@ -18,15 +18,15 @@ def divided(
     divisions: int,
     least: float,
 ) -> Found:
-    """The best value in a range, probed at equal steps, then twice a step around the winner.
+    """The best value in a range, probed at equal steps, then in two steps around the winner.
 
-    The best score is kept from pass to pass and starts at 0, so a range without any match gives
-    its middle (T12).
+    The best score is kept from pass to pass and starts at 0, so a range without any match gives its
+    middle (T12).
 
     Args:
         score_at: Matching score of a value.
-        bounds: Where to search, both ends included (M20).
-        divisions: Steps of a pass.
+        bounds: Range of the search, both ends included (M20).
+        divisions: Number of steps of a pass.
         least: Width at which to stop.
 
     Source: Demir 2006, algorithms 1 and 6, in floating point.
@@ -50,10 +50,10 @@ def divided(
 
 
 def angle_found(score_at: Callable[[float], float], limits_deg: tuple[float, float]) -> Found:
-    """Algorithm 1: how far segments are turned in the picture's plane, degrees (T12)."""
+    """Algorithm 1: the turn of segments in the picture's plane, degrees (T12)."""
     return divided(score_at, limits_deg, ANGLE_DIVISIONS, LEAST_STEP_DEG)
 
 
 def ratio_found(score_at: Callable[[float], float], length_px: float) -> Found:
-    """Algorithm 6: how much of a segment's length is seen, 0 to 1, to a pixel (T18, M19, M20)."""
+    """Algorithm 6: the visible share of a segment's length, 0 to 1, to a pixel (T18, M19, M20)."""
     return divided(score_at, (0.0, 1.0), RATIO_DIVISIONS, 1.0 / length_px)

@@ -33,24 +33,24 @@ from viewer.stick.contour import (
 from viewer.stick.subdivision import angle_found, ratio_found
 
 LIMITS_DEG: Final = {"neck": (45.0, 135.0), "waist": (45.0, 135.0), "hip": (240.0, 300.0)}
-"""Table 3.3 (T6)."""
+"""Ranges of the segments' angles, degrees: table 3.3 (T6)."""
 
 
 Span = tuple[float, float]
-"""From where to where along the rows or down the columns, pixels."""
+"""First and last pixel along the rows or down the columns."""
 
 
 class ThesisFit(NamedTuple):
-    """What the thesis's stages find."""
+    """Result of the thesis's stages."""
 
     pose: Vector
     hidden: NDArray[np.bool_]
-    """(10,) of LIMBS: where the user is asked (T26)."""
+    """(10,) of LIMBS: segments that the user is asked about (T26)."""
     evaluations: int
 
 
 class _Fit(NamedTuple):
-    """A fit under way: the pose is changed in place, matches are counted."""
+    """A fit in progress: the pose is changed in place, matches are counted."""
 
     seen: Bits
     width: int
@@ -64,7 +64,7 @@ def fit_thesis(mask: Mask, stature_px: float, method: Method) -> ThesisFit:
 
     Args:
         mask: (H, W), normalised.
-        stature_px: Of the body standing, in its pixels.
+        stature_px: Height of the standing body, in its pixels.
         method: How elbows are found.
     """
     rows = np.flatnonzero(mask.any(axis=1))
@@ -92,7 +92,8 @@ def fit_thesis(mask: Mask, stature_px: float, method: Method) -> ThesisFit:
 
 
 def _middle(mask: Mask, stature_px: float) -> float:
-    """Column of the torso: the median of its rows' middles; one stretched arm moves few (T11)."""
+    """Column of the torso: the median of the rows' middles; one stretched arm moves few of them
+    (T11)."""
     rows = np.flatnonzero(mask.any(axis=1))
     head, torso = (THESIS_RATIOS[name] / THESIS_RATIOS["stature"] for name in ("head", "torso"))
     high, low = (rows[0] + round(share * stature_px) for share in (head, head + torso))
@@ -101,7 +102,7 @@ def _middle(mask: Mask, stature_px: float) -> float:
 
 
 def _turned(fit: _Fit, limbs: Sequence[int], limits_deg: tuple[float, float]) -> None:
-    """Algorithm 1 for the first of the limbs; the torso takes the head with it."""
+    """Algorithm 1 for the first of the limbs; the head turns with the torso."""
     at = ANGLE + limbs[0]
     part = _reachable(fit, limbs)
 
@@ -168,7 +169,7 @@ def _score(fit: _Fit, limbs: Sequence[int], part: Bits) -> float:
 
 
 def _reachable(fit: _Fit, limbs: Sequence[int]) -> Bits:
-    """The silhouette where segments can reach around the joint on which they hang."""
+    """The silhouette within the segments' reach around the joint on which they hang."""
     reach = sum(float(THESIS.lengths[limb]) for limb in limbs) * fit.pose[STATURE]
     x, y = segments_px(THESIS, fit.pose)[limbs[0], 0]
     rows = (y - reach, y) if limbs[0] in (TORSO, HEAD) else (y, y + reach)

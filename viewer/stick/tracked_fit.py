@@ -1,4 +1,5 @@
-"""The stick body fitted by search: from the frame before, limbs found afresh, all refined."""
+"""The stick body fitted by search: from the frame before, with limbs searched anew and all
+refined."""
 
 from collections.abc import Iterable
 from typing import Final, NamedTuple
@@ -30,31 +31,32 @@ from viewer.stick.stick_costs import COSTS
 from viewer.stick.stick_search import Moves, Task, beamed, covered, refined
 
 STARTS: Final = (1.0, 0.3)
-"""Breadths of the trunk with which a person is met of whom nothing is known."""
+"""Breadths of the trunk that are tried for an unknown person."""
 FIRST_TRUST: Final = 0.3
-"""How much a standing body is expected then."""
+"""Weight of a standing body's prediction for an unknown person."""
 REFIT_SCORE: Final = 0.6
-"""A worth below which the body is also looked for afresh."""
+"""Worth below which the body is also searched anew."""
 HIDDEN_SHARE: Final = 0.6
-"""A limb of which more lies over or behind the rest of the body is hidden."""
+"""Share of a limb, over or behind the rest of the body, above which it is hidden."""
 PELVIS_SHARE: Final = float(ADULT.lengths[HEAD] + ADULT.lengths[TORSO])
-"""How far the pelvis lies below the crown, which is the top unless hands are above it, and, from
-the soles up, what is left of the stature, unless the legs are bent or lifted."""
+"""Depth of the pelvis below the crown, which is the top unless hands are above it, and its
+height above the soles, unless the legs are bent or lifted; statures."""
 
 UPRIGHT_MOVES: Final = 9
-"""How many of the moves are those of trunk and head."""
+"""Number of the moves of trunk and head, which come first."""
 COARSE, MIDDLE, FINE = (16, 4), (8, 2), (4, 2)
 """Half a window and its width at the end, in units of each move."""
 
 LEAN_DEG: Final = (-30.0, 210.0)
-"""Where trunk and head point. T6 allows 45 to 135, which leaves out whoever fell; who lies may
-have the head lower in the picture than the feet, for cameras look down."""
+"""Range of the directions of trunk and head, degrees. T6 allows 45 to 135, which excludes a
+person who fell; the head of a lying person may be lower in the picture than the feet, as cameras
+look down."""
 ARM_RANGE_DEG, LEG_RANGE_DEG = (0.0, 345.0, 140.0), (180.0, 360.0, 100.0)
-"""Where upper limbs can point in the picture, and how far lower ones bend from them."""
+"""Ranges of the upper limbs' directions in the picture, and of the lower limbs' bends."""
 
 
 class TrackedFit(NamedTuple):
-    """What the search finds."""
+    """Result of the search."""
 
     pose: Vector
     hidden: NDArray[np.bool_]
@@ -67,7 +69,7 @@ def _moves() -> Moves:
     moves: list[tuple[float, dict[int, float]]] = [(0.25, {X: 1.0}), (0.25, {Y: 1.0})]
     sunk = {RATIO + limb: -1.0 / (ADULT.lengths[limb] * STATURE_PX) for limb in (2, 3)}
     longer = {RATIO + TORSO: 1.0 / (ADULT.lengths[TORSO] * STATURE_PX)}
-    moves.append((0.25, {Y: 1.0, **longer, **sunk}))  # neck and knees stay where they are
+    moves.append((0.25, {Y: 1.0, **longer, **sunk}))  # neck and knees stay in place
     moves += [(1.0, {ANGLE + TORSO: 1.0}), (0.02, {RATIO + TORSO: 1.0}), (0.02, {BREADTH: 1.0})]
     moves.append((0.02, {RATIO + TORSO: 1.0, RATIO + HEAD: 1.0}))  # a bow
     moves += [(0.2, {STATURE: 1.0}), (1.0, {ANGLE + HEAD: 1.0})]
@@ -84,7 +86,7 @@ def _moves() -> Moves:
 
 
 def _moving(factors: Iterable[int]) -> int:
-    """The segments, as bits, that move when some numbers of a pose do."""
+    """The segments, as bits, that some numbers of a pose move."""
     found = 0
     hanging = {HEAD: 1 << HEAD}
     for upper, lower in CHAINS:
@@ -110,7 +112,7 @@ _MOVES: Final = _moves()
 
 
 def fit_tracked(mask: Mask, before: Vector | None) -> TrackedFit:
-    """The pose that is worth most: S less what it costs.
+    """The pose of greatest worth: S minus its cost.
 
     Args:
         mask: (H, W), normalised.
@@ -130,8 +132,8 @@ def fit_tracked(mask: Mask, before: Vector | None) -> TrackedFit:
 
 
 def _starts(mask: Mask) -> list[Vector]:
-    """Standing bodies whose crown, or whose soles, are where the silhouette ends; lying ones too
-    where that is broader than tall."""
+    """Standing bodies whose crown, or whose soles, are at the silhouette's ends; lying ones too
+    where it is broader than tall."""
     rows = np.flatnonzero(mask.any(axis=1))
     middle = float(np.median(np.nonzero(mask)[1])) + 0.5
     from_crown = rows[0] + PELVIS_SHARE * STATURE_PX
@@ -146,7 +148,7 @@ def _starts(mask: Mask) -> list[Vector]:
 
 
 def _lying(mask: Mask) -> list[Vector]:
-    """Bodies along a silhouette that is broader than tall, the crown at either end."""
+    """Bodies along a silhouette that is broader than tall, with the crown at either end."""
     rows, columns = np.nonzero(mask)
     if np.ptp(columns) <= np.ptp(rows):
         return []
@@ -165,7 +167,7 @@ def _lying(mask: Mask) -> list[Vector]:
 
 
 def _lean_deg(angle_deg: float) -> float:
-    """The same direction in [-90, 270), where LEAN_DEG lies."""
+    """The same direction in [-90, 270), which contains LEAN_DEG."""
     return float((angle_deg + 90.0) % 360.0 - 90.0)
 
 
@@ -181,7 +183,7 @@ def _task(seen: NDArray[np.uint64], mask: Mask, expected: Vector, trust: float) 
 
 
 def _searched(task: Task) -> tuple[Vector, float, int]:
-    """(pose, its worth, matches): trunk and head, both legs, both arms, then everything."""
+    """(pose, its worth, matches): trunk and head, both legs, both arms, then all numbers."""
     pose = task.expected.copy()
     matches = 0
     for half, stop in (COARSE, FINE):
