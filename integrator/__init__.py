@@ -1,1 +1,1 @@
-"""Two reports (or one) in, one body out."""
+"""The views of an instant in, bodies out."""

@@ -1,4 +1,4 @@
-"""Whether a body is believed with reason: the landmarks in its pictures stand where it does."""
+"""Whether a body is believed: landmarks in its pictures must agree with it."""
 
 from typing import Final
 
@@ -12,39 +12,39 @@ from common.rig.camera import Camera, Rig, project
 from integrator.single.reflection import yaw_deg
 
 LOST_SCORE: Final = 0.35
-"""A body whose S is lower than this in every view is not believed, unless landmarks of two views
-are trusted and bear it out: clothes of the wall's colour leave hardly an outline."""
+"""S below which, in every view, a body is not believed, unless trusted landmarks of two views
+confirm it: clothes of the wall's colour leave hardly a silhouette."""
 TRUSTED: Final = 0.5
-"""Landmarks that are surer than this on average are held against a body."""
+"""Mean confidence of landmarks from which on they are compared with a body."""
 SURE: Final = 0.5
-"""Of a landmark that counts then."""
+"""Confidence of a single landmark that counts then."""
 LEAST: Final = 5
-"""Fewer of them tell nothing."""
+"""Fewest such landmarks."""
 ASTRAY: Final = 0.13
-"""Median distance of the sure landmarks from the body's joints, in heights of the body, from which
-it is not believed: 0.03 at most in 99 % of two performers' frames, 0.17 in the median of frames
-that are more than 200 mm off (docs/measurements.md)."""
+"""Median distance of the sure landmarks from the body's joints, in heights of the body, from
+which it is not believed: 0.03 at most in 99 % of two performers' frames, 0.17 in the median of
+frames that are more than 200 mm off (docs/measurements.md)."""
 FACES: Final = 0.8
-"""So sure must a view be of which way somebody faces ..."""
+"""Confidence of a view's facing from which on it is compared with the body's."""
 TURNED_DEG: Final = 100.0
-"""... for a body that is turned so far from it not to be believed."""
+"""Difference of the facings, degrees, from which on a body is not believed."""
 NOBODY: Final = 0.3
 """Mean confidence of the landmarks below which they show no person: 0.53 at least in two
 performers' frames, 0.39 in those of synthetic people in free motion (docs/measurements.md)."""
 UNTOLD_SCORE: Final = 0.45
-"""Least S in each view where the landmarks of no view are trusted: it is 0.6 in 99 % of two
+"""Smallest S in each view where no view's landmarks are trusted: it is 0.6 in 99 % of two
 performers' frames (docs/measurements.md)."""
 
 
 def is_believed(
     joints_m: NDArray[np.float64], rig: Rig, seen: Seen, scores: tuple[float, ...]
 ) -> bool:
-    """Whether what the views show bears a body out: of those whose landmarks are trusted, two.
+    """Whether the views confirm a body; of views with trusted landmarks, two must.
 
     Args:
         joints_m: (15, 3) world, JOINT_NAMES.
         rig: The cameras.
-        seen: The person as each view sees them.
+        seen: The person in each view.
         scores: S of the body in each view.
     """
     views = [
@@ -73,18 +73,18 @@ def _is_trusted(person: Observation) -> bool:
 
 
 def _sure(found: Landmarks) -> float:
-    """How sure landmarks are on average."""
+    """Mean confidence of the landmarks."""
     return sum(found.confidence) / len(found.confidence)
 
 
 def _astray(joints_m: NDArray[np.float64], camera: Camera, found: Landmarks | None) -> float:
-    """How far half of the sure landmarks are at least from a body's joints, in its heights.
+    """Median distance of the sure landmarks from a body's joints, in its heights.
 
-    Left and right may be exchanged: which way somebody faces is asked apart.
+    Left and right may be exchanged: the facing is tested separately.
     """
     assert found is not None
     joints_px, seen_px = project(camera, joints_m), np.array(found.joints_px)
-    if np.isnan(joints_px).any():  # it is behind the camera that sees somebody
+    if np.isnan(joints_px).any():  # the body is behind the camera that sees the person
         return np.inf
     tall_px = max(float(np.linalg.norm(np.ptp(joints_px, axis=0))), 1.0)
     sure = np.array(found.confidence) > SURE
@@ -94,9 +94,9 @@ def _astray(joints_m: NDArray[np.float64], camera: Camera, found: Landmarks | No
 
 
 def _is_turned_about(joints_m: NDArray[np.float64], told: list[tuple[Observation, Camera]]) -> bool:
-    """Whether all views that are sure which way somebody faces see another one than the body's.
+    """Whether all views that are sure of the facing disagree with the body's.
 
-    One alone takes front for back too often.
+    A single view confuses front and back too often.
     """
     off_deg = [
         _off_deg(yaw_deg(camera, joints_m), person.landmarks.facing_deg)

@@ -1,4 +1,4 @@
-"""What the person at the page may ask of the integrator."""
+"""Commands from the page to the integrator."""
 
 from typing import Final
 
@@ -9,18 +9,18 @@ from integrator.opening_posture import Opening
 from integrator.single.sight import Annotations
 
 OTHERWISE: Final[dict[str, Orientation]] = {"front": "forward_right", "back": "backward_right"}
-"""Which way somebody faces of whom nothing else is known."""
+"""Prior for a person's facing."""
 
 
 def step(
     state: State, said: Annotations, command: Command
 ) -> tuple[State, Annotations, Answer | None]:
-    """One command: the state that it leaves, what is said of the next instant, and the answer.
+    """One command: the state after it, the inputs for the next instant, and the answer.
 
     Args:
         state: Before it.
-        said: What was said of the next instant already.
-        command: Any; None is answered to those that are not for the integrator.
+        said: Inputs for the next instant so far.
+        command: Any command; the answer is None where it is not for the integrator.
     """
     if command.what == "measure":
         return _unmeasured(state), said, _answer(command, True, _how_to_stand(state))
@@ -36,7 +36,7 @@ def step(
 
 
 def _unmeasured(state: State) -> State:
-    """The body is to be measured again; until then it has the lengths that it had."""
+    """The state in which the body will be measured again; until then it keeps its lengths."""
     return state._replace(opening=Opening(bdp=state.opening.bdp))
 
 
@@ -47,7 +47,7 @@ def _how_to_stand(state: State) -> str:
 
 
 def _turned(before: str, to: str) -> Orientation:
-    """The same side of the picture, the front or the back: one of ORIENTATIONS."""
+    """The same side of the picture with front and back exchanged: one of ORIENTATIONS."""
     side = before.rpartition("_")[2]
     name = f"{'forward' if to == 'front' else 'backward'}_{side}"
     return next((one for one in ORIENTATIONS if one == name), OTHERWISE[to])

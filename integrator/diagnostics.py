@@ -1,4 +1,4 @@
-"""What was odd about a performance, and what was made of it instead: a line each."""
+"""Oddities of a performance, one line each, with what was assumed instead."""
 
 from typing import Final, NamedTuple
 
@@ -7,20 +7,20 @@ from common.bus.messages import CameraFault, View
 from integrator import merge_state
 
 DOUBTED: Final = 0.5
-"""Of a rig by which no more than this is left of the joints' confidence something is said."""
+"""Share of the joints' confidence below which a rig is reported as doubtful."""
 
 
 class Useless(NamedTuple):
-    """Pictures of one camera that showed no scene."""
+    """Number of one camera's pictures that showed no scene."""
 
     faults: tuple[CameraFault, ...] = ()
     frames: int = 0
     since_s: float = 0.0
-    """When the first of them was taken."""
+    """Time of the first of them."""
 
 
 class State(NamedTuple):
-    """How often each viewer saw somebody, and how often only a part of them."""
+    """How often each viewer saw a person, and how often only a part of one."""
 
     seen: tuple[int, ...] = ()
     """By view, in the order of the rig's cameras; empty before the first instant."""
@@ -29,7 +29,7 @@ class State(NamedTuple):
 
 
 def step(state: State, instant: Instant) -> State:
-    """One instant more."""
+    """Process one instant."""
     views = instant.views
     if not state.seen:
         state = State((0,) * len(views), (0,) * len(views), (Useless(),) * len(views))
@@ -50,7 +50,7 @@ def _with(own: Useless, report: View | None) -> Useless:
 
 
 def assumed(merged: merge_state.State) -> list[str]:
-    """What is known to be odd from the start: no calibration."""
+    """Oddities known from the start: no calibration."""
     if merged.scale_source == "calibrated":
         return []
     if merged.scale_source == "person":
@@ -65,7 +65,7 @@ def assumed(merged: merge_state.State) -> list[str]:
 
 
 def doubt(merged: merge_state.State) -> str:
-    """What is said of a rig that both views do not bear out; "" while they do, or none is known."""
+    """The report of a rig that the views contradict; "" while they do not, or without a rig."""
     told, trusts = merged.agreement.told, merged.settings.trust_calibration
     if told is None or told.believed > DOUBTED or trusts or merged.scale_source == "assumed":
         return ""
@@ -79,7 +79,7 @@ def doubt(merged: merge_state.State) -> str:
 
 
 def warnings(state: State, merged: merge_state.State) -> list[str]:
-    """All that was odd, once the performance is over."""
+    """All oddities, once the performance is over."""
     lines = assumed(merged)
     if any(state.seen) and not merged.opening.measured:
         lines.append(

@@ -10,24 +10,24 @@ import numpy as np
 from common.video.clip_facts import Clip
 
 NO_FRAME: Final = -1
-"""Number of an instant at which camera 1 took none."""
+"""Number of an instant at which camera 1 took no frame."""
 
 
 class FrameTimes(msgspec.Struct, frozen=True):
     """When camera 1 takes its frames."""
 
     period_s: float
-    """From one frame that is looked at to the next."""
+    """Time between two processed frames."""
     every: int = 1
-    """Every n-th of its video is looked at."""
+    """Stride: every n-th frame of its video is processed."""
     counts: bool = False
-    """A camera: its frames are counted as they come. Of a file they have their places."""
+    """True for a camera: its frames are counted as they come. The frames of a file have indices."""
     captured_s: tuple[float, ...] = ()
-    """When each frame of a file was taken, where its rate varies or frames are missing."""
+    """Capture times of a file's frames, where its rate varies or frames are missing."""
 
 
 def frame_times(clip: Clip) -> FrameTimes | None:
-    """Of a clip's camera 1; None where that is no part of it."""
+    """The times of a clip's camera 1; None where that is no part of it."""
     view = clip.views[0]
     if view.number != 1:
         return None
@@ -41,15 +41,15 @@ def frame_times(clip: Clip) -> FrameTimes | None:
 def frame_at(times: FrameTimes, captured_s: float, before: int, before_s: float | None) -> int:
     """The number of an instant that camera 1's viewer does not report.
 
-    Time tells it, not what was reported: rows go on while a viewer is away.
+    It follows from time, not from reports: rows continue while a viewer is away.
 
     Args:
         times: When camera 1 takes frames.
-        captured_s: When the instant was.
-        before: Number of the instant before; `before_s` is when that was, None: there was none.
+        captured_s: Time of the instant.
+        before: Number of the instant before; `before_s` is its time, None: there was none.
 
     Returns:
-        NO_FRAME where its video has none of that moment, half a period off at most, or where the
+        NO_FRAME where its video has no frame within half a period of that time, or where the
         instant before has it already.
     """
     if times.counts:
@@ -81,5 +81,5 @@ def _placed(times: FrameTimes, captured_s: float) -> int:
 
 
 def _nearest(value: float) -> int:
-    """The nearest whole number, halves upwards: so numbers follow each other at any shift."""
+    """The nearest whole number, halves upwards: so numbers are consecutive at any shift."""
     return math.floor(value + 0.5)

@@ -1,4 +1,4 @@
-"""What an integrator leaves to the next in its place: body, rig, count, start, who has ended."""
+"""What an integrator leaves to its successor: body, rig, count, start, ended viewers."""
 
 import logging
 from pathlib import Path
@@ -23,7 +23,7 @@ log = logging.getLogger(__name__)
 
 
 class HandedOver(msgspec.Struct, frozen=True):
-    """What would take the person another T, or the viewers another while, to tell again."""
+    """The state that would take another T pose, or a wait for the viewers, to establish again."""
 
     bdp: Bdp | None
     measured: bool
@@ -31,18 +31,18 @@ class HandedOver(msgspec.Struct, frozen=True):
     rig: Rig | None
     scale_source: ScaleSource
     calibration: int
-    """How often the rig was changed."""
+    """Number of changes of the rig."""
     late_s: float
-    """By how much the times of view 2 are set back."""
+    """Time by which the times of view 2 are set back."""
     numbered: int
-    """The last number that an instant had."""
+    """The last number of an instant."""
     shifts: tuple[Shift, ...] = (AS_IT_WAS, AS_IT_WAS)
-    """How the cameras stood when the rig was told."""
+    """Shifts of the cameras' pictures when the rig was computed."""
     over: tuple[Ended, ...] = ()
-    """What viewers said that ended: they do not say it twice."""
+    """Viewers that reported their end: they do not report it twice."""
     start_s: float | None = None
-    """When the run began, by this host's monotonic clock, which is the room's: where the viewers
-    died too nobody else knows it, and a recorded clip would be played from its beginning."""
+    """Start of the run, by this host's monotonic clock, which is the room's. Where the viewers
+    died too, no other process knows it, and a recorded clip would be played from its beginning."""
 
 
 def handed_over(
@@ -51,8 +51,8 @@ def handed_over(
     over: tuple[Ended, ...] = (),
     start_s: float | None = None,
 ) -> HandedOver:
-    """What of a state is handed over, by how much view 2 is late, which views are over, and when
-    the run began."""
+    """The part of a state that is handed over, with the delay of view 2, the ended views and the
+    start of the run."""
     known = state.opening
     return HandedOver(
         known.bdp,
@@ -70,7 +70,7 @@ def handed_over(
 
 
 def resumed(state: State, given: HandedOver) -> State:
-    """A new state that knows what was handed over; poses and filters begin anew."""
+    """A new state with the handed-over knowledge; poses and filters begin anew."""
     opening = Opening(given.bdp, given.measured, given.measured_at_m) if given.bdp else Opening()
     return state._replace(
         opening=opening,
@@ -83,22 +83,22 @@ def resumed(state: State, given: HandedOver) -> State:
 
 
 class Estate:
-    """The folder in which it is left; without a folder nothing is."""
+    """The folder that holds it; without a folder nothing is left."""
 
     def __init__(self, folder: Path | None) -> None:
-        """Of one run alone."""
+        """The folder of one run alone."""
         self._path = None if folder is None else folder / NAME
         self._left: HandedOver | None = None
         self.late_s = 0.0
-        """By how much the times of view 2 were set back."""
+        """Time by which the times of view 2 were set back."""
         self.over: tuple[Ended, ...] = ()
-        """What viewers had said that ended."""
+        """Viewers that had reported their end."""
         self.start_s: float | None = None
-        """When the run had begun."""
+        """Start of the run."""
         self._next_s = 0.0
 
     def taken_up(self, state: State) -> State:
-        """The state with what was left, if anything was."""
+        """The state with what the predecessor left, if anything."""
         if self._path is None or not self._path.is_file():
             return state
         try:
@@ -117,10 +117,10 @@ class Estate:
         over: tuple[Ended, ...] = (),
         start_s: float | None = None,
     ) -> None:
-        """Leave what has changed, but for the count: time tells that too.
+        """Write what has changed, the count apart: it follows from time.
 
-        At once where the run began, a body was measured, the rig changed or a view ended; else
-        once a second.
+        At once where the run began, a body was measured, the rig changed or a view ended; else once
+        a second.
         """
         if self._path is None:
             return
@@ -142,7 +142,7 @@ class Estate:
         return bool(same == self._left)
 
     def _is_news(self, own: HandedOver) -> bool:
-        """Whether it is worse to lose than what is refined from frame to frame."""
+        """Whether its loss would be worse than that of values refined from frame to frame."""
         return self._left is None or _news(own) != _news(self._left)
 
 

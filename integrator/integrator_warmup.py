@@ -1,4 +1,4 @@
-"""Synthetic reports, merged once, so that all is compiled and loaded before the first real ones."""
+"""Synthetic reports, merged once to compile and load everything before the first real ones."""
 
 from typing import Final
 
@@ -22,11 +22,11 @@ VIEWERS: Final[tuple[ViewerNumber, ...]] = (1, 2)
 
 
 def warm_up(settings: Settings, size: tuple[int, int]) -> None:
-    """Merge reports of somebody who stands, in a calibrated room and in another: three pairs, then
-    that of one view alone.
+    """Merge reports of a standing person, in a calibrated room and in another: three pairs, then
+    one view alone.
 
     Args:
-        settings: Of the run.
+        settings: The run's settings.
         size: (width, height) of the working picture.
     """
     known = _rig(size)
@@ -39,7 +39,7 @@ def warm_up(settings: Settings, size: tuple[int, int]) -> None:
 
 
 def _clear(rig: Rig, instant: Instant) -> None:
-    """Clear silhouettes, of which one has clutter."""
+    """Clear silhouettes, one of them with clutter."""
     first, second = instant.detections
     assert first is not None
     clutter = unpack(first)

@@ -1,4 +1,4 @@
-"""Universal BDPs from the opening posture: several frames of both views, their median (4.2)."""
+"""Universal BDPs from the opening posture: the median of several frames of both views (4.2)."""
 
 from typing import Final, NamedTuple
 
@@ -15,32 +15,32 @@ from integrator.prior_body import prior
 from integrator.rig.body_position import scales_at, sees_flank, upright_place_of
 
 LEG_KEPT: Final = (0.85, 1.05)
-"""Legs from the navel to the floor are believed where they are this share of the measured ones;
-else the floor of the calibration is wrong."""
+"""Range of the legs' length from the navel to the floor, over the measured one, in which it is
+believed; otherwise the calibration's floor is wrong."""
 
 
 class Sample(NamedTuple):
-    """A pose as it was found, and what was seen then."""
+    """A pose, and the observations that it was found from."""
 
     pose: Vector
     seen: tuple[Observation, Observation]
 
 
 class Opening(NamedTuple):
-    """What is known of the body, and what its opening posture has told so far."""
+    """The body, and the progress of its measurement."""
 
     bdp: Bdp | None = None
-    """Universal BDPs, metres: a prior until measured; None until somebody is seen."""
+    """Universal BDPs, metres: a prior until measured; None until a person is seen."""
     measured: bool = False
     measured_at_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    """Where the navel was in the opening posture."""
+    """Place of the navel in the opening posture."""
     bodies: tuple[Bdp, ...] = ()
     """Universal BDPs of the frames accepted so far."""
     places_m: tuple[tuple[float, float, float], ...] = ()
     refused: int = 0
     """Frames since the last accepted one."""
     measures: tuple[tuple[Measure, Measure], ...] = ()
-    """What the accepted frames showed, in pixels of both views."""
+    """Measures of the accepted frames, in pixels of both views."""
     samples: tuple[Sample, ...] = ()
     """The instants to whose silhouettes the prior was fitted; empty where it was not."""
     unsampled: int = 0
@@ -48,12 +48,12 @@ class Opening(NamedTuple):
 
     @property
     def under_way(self) -> bool:
-        """Somebody takes the opening posture, and it has not told enough yet."""
+        """A person holds the opening posture, and its measurement is incomplete."""
         return bool(self.bodies) and not self.measured
 
 
 def init(body: Bdp | None) -> Opening:
-    """Nothing is known, or a body that was measured before: its navel is where its legs have it."""
+    """The initial state: unknown, or a body measured before, whose navel follows from its legs."""
     if body is None:
         return Opening()
     legs_m = body.r_upper_leg.height + body.r_lower_leg.height
@@ -63,16 +63,16 @@ def init(body: Bdp | None) -> Opening:
 def step(
     opening: Opening, rig: Rig, seen: Seen, due: int, method: Method
 ) -> tuple[Opening, Vector | None]:
-    """One instant more; the navel's place where it is now settled, else None.
+    """Process one instant; the navel's place where it is settled now, else None.
 
     After `due` frames without the posture, measuring begins anew.
 
     Args:
-        opening: What is known so far.
+        opening: The state so far.
         rig: Two cameras.
-        seen: The person as each view sees them.
-        due: How many accepted frames make the body (their median).
-        method: What is done beyond the print.
+        seen: The person in each view.
+        due: Number of accepted frames whose median makes the body.
+        method: The departures from the print.
     """
     if opening.bdp is None:
         opening = opening._replace(bdp=prior(rig, seen))
@@ -91,14 +91,14 @@ def step(
 
 
 def elsewhere(opening: Opening, rig: Rig, due: int, method: Method, stature_m: float) -> Opening:
-    """The body, worked out again by a new rig.
+    """The body, recomputed by a new rig.
 
     Args:
         opening: By the rig before. A body that was known before the run is kept.
         rig: Two cameras.
         due: As for `step`.
         method: As for `step`.
-        stature_m: Of a body that was not measured.
+        stature_m: Stature for a body that was not measured.
     """
     if opening.measured and not opening.measures:
         return opening
@@ -110,7 +110,7 @@ def elsewhere(opening: Opening, rig: Rig, due: int, method: Method, stature_m: f
 
 
 def _shows_both(rig: Rig, front: Measure, side: Measure) -> bool:
-    """Whether view 1 sees the facade and view 2 the flank of somebody before both."""
+    """Whether view 1 sees the facade and view 2 the flank of a person before both."""
     if front.bdp_px is None:
         return False
     place = upright_place_of(rig, front.centre_px, side.centre_px)
@@ -118,7 +118,7 @@ def _shows_both(rig: Rig, front: Measure, side: Measure) -> bool:
 
 
 def _measured(opening: Opening, rig: Rig, front: Measure, side: Measure) -> Opening:
-    """An accepted frame more."""
+    """The state with one more accepted frame."""
     place = upright_place_of(rig, front.centre_px, side.centre_px)
     x, y, z = (float(value) for value in place)
     return opening._replace(
@@ -130,7 +130,7 @@ def _measured(opening: Opening, rig: Rig, front: Measure, side: Measure) -> Open
 
 
 def _settled(opening: Opening, due: int, method: Method) -> tuple[Opening, Vector | None]:
-    """The medians, once enough frames have told."""
+    """The medians, once enough frames were accepted."""
     if len(opening.bodies) < due:
         return opening, None
     lengths = np.median([body.lengths() for body in opening.bodies], axis=0)
@@ -151,7 +151,7 @@ def universal_bdp(front: Measure, side: Measure, px_per_m_1: float) -> Bdp:
     Args:
         front: Viewer 1's measure, with BDPs.
         side: Viewer 2's measure.
-        px_per_m_1: Size of a metre at the body in picture 1.
+        px_per_m_1: Pixels per metre at the body in picture 1.
 
     Raises:
         ValueError: When `front` saw no facade and so has no BDPs.
@@ -168,8 +168,8 @@ def universal_bdp(front: Measure, side: Measure, px_per_m_1: float) -> Bdp:
 def _on_the_floor(body: Bdp, navel_m: float) -> Bdp:
     """The body with legs that reach from its navel to the floor, y = 0.
 
-    Toes are nearer to the camera than the body is, so the lowest row of a silhouette lies some
-    50 mm below the soles. A navel that no legs could carry leaves the body as it is.
+    Toes are nearer to the camera than the body is, so the lowest row of a silhouette lies some 50
+    mm below the soles. A navel at a height that no legs have leaves the body unchanged.
     """
     half = navel_m / 2
     if not LEG_KEPT[0] <= half / body.r_upper_leg.height <= LEG_KEPT[1]:

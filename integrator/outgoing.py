@@ -1,4 +1,4 @@
-"""What is told of an instant: the body for everyone, the guide for the viewers' next frame."""
+"""Output of an instant: the body for all, the guide for the viewers' next frame."""
 
 import math
 from collections.abc import Sequence
@@ -26,20 +26,20 @@ from integrator.rig.undistortion import undistorted_rig
 from integrator.single.sight import Annotations
 
 LOST_S: Final = 1.0 / 3.0
-"""After so long in which it is not believed the body is lost: five frames of 15 a second. Until
+"""Duration without belief, seconds, after which the body is lost: five frames at 15 Hz. Until
 then it is predicted: it has a pose, with confidence 0."""
 
 
 def body_of(
     state: State, instant: Instant, seen: Seen, angles_deg: Vector, scores: tuple[float, ...]
 ) -> Body:
-    """The body in the pose that was found, with its angles smooth; a lost one is given no pose.
+    """The body in its pose, with smoothed angles; a lost one has no pose.
 
     Args:
-        state: Of this instant; its pose is as found.
-        instant: What was heard of it.
-        seen: The same as without distortion, of views that have somebody.
-        angles_deg: The smooth angles, ANGLE_NAMES order.
+        state: Of this instant; its pose is unsmoothed.
+        instant: The views received.
+        seen: The same without distortion, for views with a person.
+        angles_deg: The smoothed angles, ANGLE_NAMES order.
         scores: S of the pose in each view.
     """
     rig, found, bdp = state.rig, state.found, state.opening.bdp
@@ -86,11 +86,12 @@ def body_of(
 def weighed(
     state: State, instant: Instant, scores: tuple[float, ...], annotations: Annotations
 ) -> State:
-    """The state with how long the body has not been believed; one that both lost is forgotten.
+    """The state with the duration of disbelief; a body lost in both views is forgotten.
 
-    A frame in which the user placed joints is believed. What the network remembers of a wrong body
-    it would go on with. One view that is alone keeps what it remembers: it knows front from back
-    by that alone; of whom it never believed it is lost at once, as nothing says that it is anybody.
+    A frame in which the user placed joints is believed. Without forgetting, the network would
+    continue from its memory of a wrong body. A single view keeps its memory, which alone
+    distinguishes front from back. A body that was never believed is lost at once, as nothing shows
+    that it is a person.
     """
     found = state.found
     assert found is not None
@@ -107,7 +108,7 @@ def weighed(
 
 
 def _lost_frames(state: State) -> int:
-    """In how many instants in a row it is not believed then."""
+    """Number of instants in a row without belief after which it is lost."""
     return max(1, round(LOST_S / state.smooth.period_s))
 
 
@@ -121,7 +122,7 @@ def _places_m(state: State, pose: Vector) -> NDArray[np.float64]:
 
 
 def _extremities(state: State, seen: Seen, places_m: Vector, believed: float) -> Facts:
-    """Nose, heels, toes and knuckles; how sure they are is 0 where the rule alone places them."""
+    """Nose, heels, toes and knuckles; confidence 0 where the rule alone places them."""
     assert state.rig is not None
     assert state.opening.bdp is not None
     stature_m = stature(state.opening.bdp)
@@ -142,7 +143,7 @@ def _matches(seen: Observation) -> int:
 
 
 def _outside(instant: Instant, pixels: tuple[NDArray[np.float64], ...]) -> NDArray[np.bool_]:
-    """Which joints the only picture of somebody does not show, (15,): they are guessed."""
+    """Joints outside the only picture of a person, (15,): they are guessed."""
     seen = [(n, one) for n, one in enumerate(instant.detections) if one is not None]
     if len(seen) != 1 or not seen[0][1].cut:
         return np.zeros(len(JOINT_NAMES), np.bool_)
@@ -153,7 +154,7 @@ def _outside(instant: Instant, pixels: tuple[NDArray[np.float64], ...]) -> NDArr
 
 
 def _confidence(state: State, scores: tuple[float, ...]) -> Vector:
-    """Of each joint, (15,): what was found with the pose, or how well the whole body fits."""
+    """Confidence of each joint, (15,): found with the pose, or from the fit of the whole body."""
     assert state.found is not None
     if state.doubted:
         return np.zeros(len(JOINT_NAMES))
@@ -163,21 +164,21 @@ def _confidence(state: State, scores: tuple[float, ...]) -> Vector:
 
 
 def _believed(state: State, told: Agreement | None) -> float:
-    """Share of the confidence that is left where the rig is not believable."""
+    """Factor on the confidence where the rig is not believable."""
     if state.settings.trust_calibration:
         return 1.0
     return min(state.stands.left, 1.0 if told is None else told.believed)
 
 
 def guide_of(state: State, instant: Instant, settled_now: bool) -> Guide:
-    """What the viewers need for their next frame.
+    """Input of the viewers for their next frame.
 
-    As printed each starts where it had the body itself; beyond that where both together have it.
+    As printed each starts from its own estimate; beyond the print from both together.
 
     Args:
         state: Of this instant.
-        instant: What was heard of it.
-        settled_now: The body has just been measured: both start where it was.
+        instant: The views received.
+        settled_now: The body has just been measured: both start from its place.
     """
     rig, found, known = state.rig, state.found, state.opening
     assert rig is not None
@@ -208,9 +209,9 @@ def guide_of(state: State, instant: Instant, settled_now: bool) -> Guide:
 
 
 def _asks_for_stick(state: State) -> bool:
-    """Whether the one view that is left shall fit a stick body to its next silhouette.
+    """Whether the single remaining view shall fit a stick body to its next silhouette.
 
-    On a calibrated rig what is proposed is nearer than a lifted stick, also where it fits badly:
+    On a calibrated rig the proposal is nearer than a lifted stick body, even where it fits badly:
     72 mm against 179 while camera 1 is lost (docs/measurements.md).
     """
     alone = None if state.found is None else state.found.alone
@@ -218,7 +219,7 @@ def _asks_for_stick(state: State) -> bool:
 
 
 def no_detection(state: State, instant: Instant) -> tuple[Body, Guide]:
-    """What is told while nobody is in any view."""
+    """The output while no person is in any view."""
     known, cameras = state.opening, len(instant.views)
     body = Body(
         **_moment(state, instant),
@@ -250,20 +251,20 @@ def no_detection(state: State, instant: Instant) -> tuple[Body, Guide]:
 
 
 def _moment(state: State, instant: Instant) -> Facts:
-    """Which frame is spoken of, and when it was taken."""
+    """The frame of an instant, and its capture time."""
     newest = instant.newest
     return {"frame": state.number, "captured_s": newest.captured_s, "clock_s": newest.clock_s}
 
 
 def _made_of(instant: Instant) -> tuple[int, ...]:
-    """Which frame of each viewer is in an instant; -1: none."""
+    """The frame of each viewer in an instant; -1: none."""
     return tuple(-1 if report is None else report.frame for report in instant.views)
 
 
 def _status(state: State) -> Status:
-    """By presence, the opening and what bears the body out: never by S alone (M25).
+    """The status, from presence, the opening posture and belief: never from S alone (M25).
 
-    Who is partly outside the only picture is tracked: the joints outside have confidence 0.
+    A person partly outside the only picture is tracked: the joints outside have confidence 0.
     """
     if state.doubted:
         return "lost" if state.doubted >= _lost_frames(state) else "predicted"
@@ -271,7 +272,7 @@ def _status(state: State) -> Status:
 
 
 def _views(seen: Seen) -> Views:
-    """Which views show the person: of two cameras "both", of more their numbers."""
+    """The views that show the person: of two cameras "both", of more their numbers."""
     numbers = [str(n) for n, person in enumerate(seen, start=1) if person is not None]
     if len(seen) == len(numbers) == 2:
         return "both"
@@ -279,7 +280,7 @@ def _views(seen: Seen) -> Views:
 
 
 def _or_unseen(scales: tuple[float, ...]) -> tuple[float, ...]:
-    """Scales with 0 for a camera that has the body behind it."""
+    """Scales, with 0 for a camera that has the body behind it."""
     return tuple(scale if math.isfinite(scale) and scale > 0 else 0.0 for scale in scales)
 
 
@@ -288,7 +289,7 @@ def _points(places_m: Vector) -> tuple[Point, ...]:
 
 
 def _filed(state: State, pixels: Sequence[NDArray[np.float64]]) -> tuple[tuple[Pixel, ...], ...]:
-    """Places of each view, in its file's picture at the working size."""
+    """Places in each view, in its file's picture at the working size."""
     views = zip(pixels, state.uprights, strict=True)
     return tuple(_pixels(as_filed(own, upright)) for own, upright in views)
 

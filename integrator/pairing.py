@@ -1,4 +1,4 @@
-"""The viewers' reports, matched by when they were taken."""
+"""The viewers' reports, matched by capture time."""
 
 from typing import Final, NamedTuple, Protocol, TypeVar
 
@@ -6,8 +6,8 @@ from common.bus.instant import Instant, instant_of
 from common.bus.messages import View, ViewerNumber
 
 QUEUE: Final = 128
-"""How many reports of one viewer wait for the others: eight seconds at 15 frames a second, after
-which who was stopped has all that was said meanwhile to catch up with."""
+"""Largest number of one viewer's reports that wait for others: eight seconds at 15 Hz; a process
+that was stopped for longer has to catch up."""
 
 NEVER_S: Final = float("-inf")
 
@@ -16,56 +16,58 @@ Item = TypeVar("Item")
 
 
 class Taken(Protocol):
-    """What was made of a frame."""
+    """A report of a frame."""
 
     @property
     def captured_s(self) -> float:
-        """When it was taken."""
+        """Capture time."""
 
     @property
     def next_s(self) -> float | None:
-        """When its camera takes the next, at the earliest; None: that is not known."""
+        """Earliest capture time of its camera's next frame; None: unknown."""
 
 
 class State(NamedTuple):
-    """What waits for the others of its instant, by view in the rig's order, and what was lost."""
+    """Reports waiting for others of their instant, by view in the rig's order, and counts of
+    losses."""
 
     period_s: float
     waiting: tuple[tuple[View, ...], ...]
     """Reports of each viewer, oldest first."""
     over: tuple[bool, ...]
-    """Viewers that say nothing more: nobody waits for them."""
+    """Viewers that have ended: they are not waited for."""
     away: tuple[bool, ...]
-    """Viewers that were waited for in vain, or are known to be gone: nobody waits for them, until
-    they report again."""
+    """Viewers that are absent: they are not waited for until they report again."""
     next_s: tuple[float, ...]
-    """Before this no further frame of a viewer is taken, as it said itself."""
+    """Earliest capture time of each viewer's next frame, as it reported itself."""
     passed_s: tuple[float, ...]
-    """A report of a viewer must be younger than this: its instant has gone out already."""
+    """Smallest capture time of a viewer's report that still counts: earlier instants have gone
+    out."""
     dropped: int = 0
-    """Reports that a full queue pushed out."""
+    """Number of reports dropped from a full queue."""
     late: int = 0
-    """Reports that came after their instant had gone out, or after their viewer had ended."""
+    """Number of reports that came after their instant had gone out, or after their viewer had
+    ended."""
 
 
 class _Due(NamedTuple):
-    """What goes out next."""
+    """The next instant to go out."""
 
     reports: tuple[View, ...]
-    """Of one instant, oldest first."""
+    """Its candidate reports, oldest first."""
     middle_s: float
-    """The instant: each of them was taken within half a period of it."""
+    """The reports of the instant: each was captured within half a period of it."""
     awaited: tuple[ViewerNumber, ...]
-    """Viewers that may still say something of it."""
+    """Viewers that may still report a frame of it."""
 
 
 def init(period_s: float, viewers: tuple[ViewerNumber, ...] = (1, 2), cameras: int = 2) -> State:
-    """Nothing waits.
+    """The initial state.
 
     Args:
-        period_s: Time between frames; half of it is how far views may lie from their instant.
-        viewers: Those that report in this run; a single viewer's reports pass through.
-        cameras: Of the rig: so many views an instant has.
+        period_s: Time between frames; views may lie half of it from their instant.
+        viewers: Viewers of this run; a single viewer's reports pass through.
+        cameras: Number of the rig's cameras: an instant has as many views.
     """
     return State(
         period_s,
@@ -78,12 +80,12 @@ def init(period_s: float, viewers: tuple[ViewerNumber, ...] = (1, 2), cameras: i
 
 
 def step(state: State, report: View) -> tuple[State, list[Instant]]:
-    """Take a report in; give out what is complete now, in the order of time.
+    """Accept a report; return the instants complete now, in the order of time.
 
-    An instant goes out when each view either has its frame of it there, or can have none any more:
-    it has said something later, or that it takes no picture before. So what goes out follows from
-    what each viewer said, not from how they were heard interleaved, as long as no queue overflows
-    and nothing was called overdue.
+    An instant goes out when each view either has its frame of it, or can have none any more: it
+    reported a later one, or that it captures none before. So the output depends on each viewer's
+    reports, not on the order of their arrival, as long as no queue overflows and nothing was called
+    overdue.
     """
     own = report.viewer - 1
     if state.over[own]:
@@ -102,7 +104,7 @@ def step(state: State, report: View) -> tuple[State, list[Instant]]:
 
 def are_together(earlier: Taken, later: Taken, period_s: float) -> bool:
     """Whether two views' frames are of one instant: half a period apart at most, and the earlier
-    one's camera, which may be the faster, is not known to take another nearer to the later."""
+    one's camera, which may be faster, is not known to take another frame nearer to the later."""
     return later.captured_s - earlier.captured_s <= period_s / 2 and _is_nearest(earlier, later)
 
 
@@ -113,7 +115,7 @@ def _is_nearest(earlier: Taken, later: Taken) -> bool:
 
 
 def begin(state: State, viewer: ViewerNumber) -> State:
-    """A viewer that had ended, or was away, is there again: it is waited for."""
+    """A viewer that had ended, or was absent, is present again: it is waited for."""
     own = viewer - 1
     return state._replace(
         over=with_item(state.over, own, False),
@@ -123,29 +125,30 @@ def begin(state: State, viewer: ViewerNumber) -> State:
 
 
 def awaited(state: State, viewer: ViewerNumber) -> State:
-    """A viewer that was waited for in vain is worth waiting for, as one now waits longer."""
+    """An absent viewer is waited for again, as waits are longer now."""
     return state._replace(away=with_item(state.away, viewer - 1, False))
 
 
 def away(state: State, viewer: ViewerNumber) -> tuple[State, list[Instant]]:
-    """A viewer is known to be gone: nothing waits for it until it reports again."""
+    """A viewer is absent: it is not waited for until it reports again."""
     return _settled(state._replace(away=with_item(state.away, viewer - 1, True)))
 
 
 def end(state: State, viewer: ViewerNumber) -> tuple[State, list[Instant]]:
-    """A viewer has said its last: what waits for it goes out, and nothing waits for it again."""
+    """A viewer has ended: what waits for it goes out, and it is not waited for again."""
     return _settled(state._replace(over=with_item(state.over, viewer - 1, True)))
 
 
 def overdue(state: State, now_s: float, wait_s: float) -> tuple[State, list[Instant]]:
-    """Let reports out that have waited for others long enough (live runs only).
+    """Release reports that have waited long enough (live runs only).
 
-    Those that are still awaited are away then, and what else waits for them goes out, too.
+    Viewers still missing then count as absent, and everything else that waits for them goes out
+    too.
 
     Args:
-        state: What waits.
+        state: The waiting reports.
         now_s: The room's clock.
-        wait_s: How old a report may grow by that clock.
+        wait_s: Longest age of a waiting report, by that clock.
     """
     due = _due(state)
     oldest_s = min((queue[0].clock_s for queue in state.waiting if queue), default=now_s)
@@ -157,7 +160,7 @@ def overdue(state: State, now_s: float, wait_s: float) -> tuple[State, list[Inst
 
 
 def _settled(state: State) -> tuple[State, list[Instant]]:
-    """Give out every instant that nothing to come can change."""
+    """Output every instant that no future report can change."""
     instants: list[Instant] = []
     while True:
         state = _without_late(state)
@@ -171,9 +174,9 @@ def _settled(state: State) -> tuple[State, list[Instant]]:
 def _due(state: State) -> _Due | None:
     """The instant of the oldest report; None where nothing waits.
 
-    It is the last of the views' oldest reports that was taken within half a period of the oldest
-    of all. All those are of it that were taken up to half a period later, until one is reached to
-    which a camera that is in takes another frame nearer.
+    Its time is that of the last of the views' oldest reports within half a period of the oldest of
+    all. It contains all reports captured up to half a period later, until one is reached for which
+    a camera already in the instant takes another frame nearer to it.
     """
     waiting = sorted((q[0] for q in state.waiting if q), key=lambda report: report.captured_s)
     if not waiting:
@@ -192,7 +195,7 @@ def _due(state: State) -> _Due | None:
 
 
 def _is_awaited(state: State, viewer: ViewerNumber, middle_s: float) -> bool:
-    """Whether a viewer that has said nothing may still have a frame of an instant."""
+    """Whether a viewer without a report may still have a frame of an instant."""
     own = viewer - 1
     if state.waiting[own] or state.over[own] or state.away[own]:
         return False
@@ -200,7 +203,7 @@ def _is_awaited(state: State, viewer: ViewerNumber, middle_s: float) -> bool:
 
 
 def _without_late(state: State) -> State:
-    """Reports whose instant has gone out already are counted, and are no more."""
+    """Reports whose instant has gone out are counted and dropped."""
     kept = tuple(
         tuple(report for report in queue if report.captured_s > passed_s)
         for queue, passed_s in zip(state.waiting, state.passed_s, strict=True)
@@ -210,8 +213,8 @@ def _without_late(state: State) -> State:
 
 
 def _taken(state: State, due: _Due) -> tuple[State, Instant]:
-    """An instant goes out: what was taken before its newest report, should it still come, is late,
-    and so is a frame of the instant where its viewer has said nothing."""
+    """An instant goes out: a report captured before its newest one now counts as late, and so
+    does a frame of the instant from a viewer without a report."""
     views: dict[int, View] = {report.viewer: report for report in due.reports}
     newest_s = due.reports[-1].captured_s
     waiting, passed_s = list(state.waiting), [newest_s] * len(state.waiting)
@@ -225,5 +228,5 @@ def _taken(state: State, due: _Due) -> tuple[State, Instant]:
 
 
 def with_item(each: tuple[Item, ...], place: int, item: Item) -> tuple[Item, ...]:
-    """What each view has, with that of one of them replaced."""
+    """Each view's value, with that of one of them replaced."""
     return (*each[:place], item, *each[place + 1 :])

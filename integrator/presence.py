@@ -1,4 +1,4 @@
-"""Which viewers report, and why one does not: what is said when a view is lost and found again."""
+"""Which viewers report, and why one does not: the lines when a view is lost and found again."""
 
 from typing import Final, NamedTuple
 
@@ -8,41 +8,42 @@ from common.bus.rate import silent
 from integrator.pairing import with_item
 
 OVER_S: Final = 0.5
-"""A clip that ends so much before the other's is worth a word; both never end at once."""
+"""Difference of two clips' ends, seconds, from which on it is reported; they never end at once."""
 CLOSING_S: Final = 0.25
-"""A viewer that ends says so and leaves the bus, and the two may be heard in either order."""
+"""Time, seconds, within which a viewer's end and its departure from the bus may arrive in either
+order."""
 GONE_S: Final = 60.0
-"""How long a viewer that was killed, or whose video broke, is waited for when no other is left: it
-may be started again, which takes some seconds, half a minute on a busy machine."""
+"""How long the last viewer is waited for, seconds, after it was killed or its video failed: it
+may be restarted, which takes some seconds, half a minute on a busy machine."""
 MOST_NEWS: Final = 20
-"""Lines that are kept for the end of the run; a link that flickers would fill the log."""
+"""Number of lines kept for the end of the run; a flickering link would fill the log."""
 
 NEVER_S: Final = float("inf")
 
 
 class State(NamedTuple):
-    """What is known of each viewer; one that is no part of the run counts as over from ever."""
+    """The state of each viewer; one that is no part of the run counts as ended from the start."""
 
     period_s: float
     began_s: float = NEVER_S
-    """When the first report of the run came, by the room's clock; from then on silence counts."""
+    """Time of the run's first report, by the room's clock; from then on silence counts."""
     heard_s: tuple[float, ...] = (0.0, 0.0)
-    """When the last report of each came."""
+    """Time of each viewer's last report."""
     gone_s: tuple[float, ...] = (NEVER_S, NEVER_S)
-    """Since when each is no longer on the bus."""
+    """Time since when each is off the bus."""
     over_s: tuple[float, ...] = (NEVER_S, NEVER_S)
-    """Since when each has ended."""
+    """Time since when each has ended."""
     why_over: tuple[str, ...] = ("", "")
     fault: tuple[CameraFault, ...] = ("", "")
-    """What is wrong with the last picture of each."""
+    """Fault of each viewer's last picture."""
     lost_for: tuple[str, ...] = ("", "")
-    """Why each view is lost, as it was told; "" while it is not."""
+    """The reported cause of each lost view; "" while it is present."""
     news: tuple[str, ...] = ()
-    """All that was told, a line each."""
+    """All lines so far."""
 
 
 def init(period_s: float, viewers: tuple[ViewerNumber, ...], cameras: int = 2) -> State:
-    """Nothing was heard of the viewers of a run, on a rig of so many cameras."""
+    """The viewers of a run before any report, on a rig of that many cameras."""
     numbers = range(1, cameras + 1)
     sound: CameraFault = ""
     return State(
@@ -57,7 +58,7 @@ def init(period_s: float, viewers: tuple[ViewerNumber, ...], cameras: int = 2) -
 
 
 def heard(state: State, report: View, now_s: float) -> State:
-    """A viewer reports: it is there, whatever the bus says."""
+    """A viewer reports: it is present, whatever the bus says."""
     own = report.viewer - 1
     if state.began_s == NEVER_S:
         state = state._replace(began_s=now_s, heard_s=(now_s,) * len(state.heard_s))
@@ -69,7 +70,7 @@ def heard(state: State, report: View, now_s: float) -> State:
 
 
 def came(state: State, viewer: ViewerNumber, now_s: float) -> State:
-    """A viewer is on the bus; where it was gone or over, it has yet to report to be back."""
+    """A viewer is on the bus; after an absence or an end it must report to be present again."""
     own = viewer - 1
     missed = state.gone_s[own] != NEVER_S or state.over_s[own] != NEVER_S
     return state._replace(
@@ -85,7 +86,7 @@ def went(state: State, viewer: ViewerNumber, now_s: float) -> State:
 
 
 def ended(state: State, said: Ended, now_s: float) -> State:
-    """A viewer has said its last."""
+    """A viewer has ended."""
     own = said.viewer - 1
     return state._replace(
         over_s=with_item(state.over_s, own, now_s),
@@ -94,7 +95,7 @@ def ended(state: State, said: Ended, now_s: float) -> State:
 
 
 def going(state: State, now_s: float) -> bool:
-    """Whether anything is still to be expected."""
+    """Whether any report can still come."""
     return any(
         (over_s == NEVER_S or why_over) and now_s - min(over_s, gone_s) <= GONE_S
         for over_s, why_over, gone_s in zip(state.over_s, state.why_over, state.gone_s, strict=True)
@@ -102,7 +103,7 @@ def going(state: State, now_s: float) -> bool:
 
 
 def step(state: State, now_s: float) -> tuple[State, list[str]]:
-    """What has become of the viewers since the step before, a line for each change."""
+    """Changes of the viewers' state since the step before, a line for each."""
     if now_s < state.began_s:
         return state, []
     causes = tuple(_cause(state, own, now_s) for own in range(len(state.over_s)))
@@ -119,7 +120,7 @@ def step(state: State, now_s: float) -> tuple[State, list[str]]:
 
 
 def _cause(state: State, own: int, now_s: float) -> str:
-    """Why a view is lost; "" while it is not, and for a viewer that is no part of the run."""
+    """Why a view is lost; "" while it is present, and for a viewer that is no part of the run."""
     if state.over_s[own] == -NEVER_S:
         return ""
     if state.over_s[own] != NEVER_S:
@@ -134,7 +135,7 @@ def _cause(state: State, own: int, now_s: float) -> str:
 
 
 def _changed(own: int, state: State, causes: tuple[str, ...]) -> list[str]:
-    """What to say where a view is lost or found; another cause for the same loss is no news."""
+    """The line for a view that is lost or found; another cause for the same loss is no news."""
     before, cause = state.lost_for[own], causes[own]
     if bool(cause) == bool(before):
         return []
@@ -145,7 +146,7 @@ def _changed(own: int, state: State, causes: tuple[str, ...]) -> list[str]:
 
 
 def _going_on(left: list[int]) -> str:
-    """What is said of the views that are left."""
+    """The line about the remaining views."""
     if not left:
         return "nobody looks now"
     if len(left) == 1:

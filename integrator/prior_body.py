@@ -1,4 +1,4 @@
-"""The body before its opening posture told anything: as tall as the silhouettes say (T4)."""
+"""The body before its opening posture: as tall as the silhouettes show (T4)."""
 
 from typing import Final
 
@@ -15,18 +15,18 @@ from integrator.proposal.silhouette_window import ABOVE_M, standing_m
 from integrator.rig.body_position import UP_AXIS, place_of, roots_of, triangulate
 
 STATURES_M: Final = (0.8, 2.3)
-"""What a silhouette's height may say of a person; beyond, it is not the whole person."""
+"""Range of statures, metres; a silhouette outside it is not a whole person."""
 
 USUAL_M: Final = 1.75
-"""Stature of somebody whose outline tells none."""
+"""Stature, metres, of a person whose silhouette shows none."""
 
 
 def prior(rig: Rig, seen: Seen) -> Bdp:
     """The thesis's proportions at the height that the silhouettes show (T4).
 
-    The smallest: what is no part of the person makes an outline larger. The crown of somebody who
-    stands is as high above the floor, wherever their outline ends below or beside them. One
-    outline alone stands on the floor.
+    The smallest height counts: other foreground makes a silhouette larger. The crown of a standing
+    person is as high above the floor, wherever their silhouette ends below or beside them. A single
+    silhouette is assumed to stand on the floor.
     """
     place = _place(rig, seen)
     heights = [
@@ -43,7 +43,7 @@ def prior(rig: Rig, seen: Seen) -> Bdp:
 
 
 def _place(rig: Rig, seen: Seen) -> Vector:
-    """Where the body is, (3,) world."""
+    """Place of the body, (3,) world."""
     for person, camera in zip(seen, rig.cameras, strict=True):
         if None in seen and person is not None:
             return standing_m(unpack(person), camera)
@@ -51,15 +51,15 @@ def _place(rig: Rig, seen: Seen) -> Vector:
 
 
 def _height_m(person: Observation, camera: Camera, place: Vector) -> float:
-    """How far an outline reaches along what is upright in its picture, metres."""
+    """Extent of a silhouette along the upright direction in its picture, metres."""
     along, _ = _upwards(person, camera, place)
     return float((along.max() + 1.0 - along.min()) / px_per_m(camera, place))
 
 
 def _crown_m(rig: Rig, seen: Seen, place: Vector) -> float:
-    """Height above the floor of what is highest in both outlines; inf where that is nowhere.
+    """Height above the floor of the highest point of both silhouettes; inf where they show none.
 
-    What touches the border of a picture may go on beyond it.
+    A silhouette that touches the border of a picture may go on beyond it.
     """
     tops: list[Pixel] = []
     for person, camera in zip(seen, rig.cameras, strict=True):
@@ -74,7 +74,7 @@ def _crown_m(rig: Rig, seen: Seen, place: Vector) -> float:
 
 
 def _upwards(person: Observation, camera: Camera, place: Vector) -> tuple[Vector, NDArray[np.intp]]:
-    """How far up each pixel of an outline is in its picture, (n,), and the pixels, (n, 2)."""
+    """Height of each pixel of a silhouette in its picture, (n,), and the pixels, (n, 2)."""
     at, above = project(camera, np.stack([place, place + ABOVE_M * UP_AXIS]))
     rows, columns = np.nonzero(unpack(person))
     pixels = np.stack([columns, rows], axis=1)

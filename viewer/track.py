@@ -244,8 +244,7 @@ def _person_of(seen: Seen, box: Box, landmarks: Landmarks | None) -> Observation
 def _landmarks(state: State, frame: CapturedFrame, seen: Seen) -> Landmarks | None:
     """The joints that the picture itself shows, where the method wants them and there is time.
 
-    A single view has no other to rely on: its landmarks are always computed, in a hurry without the
-    mirrored inference.
+    A single view has no other to rely on: its landmarks are computed even in a hurry.
     """
     if not state.setup.method.landmarks or _is_left_out(state.setup, frame):
         return None
@@ -286,8 +285,8 @@ def _patched(state: State, index: int) -> State:
 
 
 def _near_px(state: State, guide: Guide | None) -> Pixel | None:
-    """Expected place of the body: where landmarks were, by the integrator, or in a single view
-    its last place."""
+    """Expected place of the body: at the landmarks, by the guide, or in a single view its last
+    place."""
     if state.landmarks is not None and is_trusted(state.landmarks):
         return state.landmarks.joints_px[PELVIS]
     known = expected_body(guide, state.setup.viewer)

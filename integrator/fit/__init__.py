@@ -1,1 +1,1 @@
-"""Poses and bodies fitted to both silhouettes."""
+"""Fits of poses and bodies to both silhouettes."""

@@ -1,4 +1,4 @@
-"""The pose that both silhouettes propose, cleared of clutter where it fits badly."""
+"""The pose proposed by both silhouettes, without clutter where it fits badly."""
 
 from typing import Final, NamedTuple
 
@@ -21,21 +21,21 @@ from integrator.proposal.pose_proposal import Memory, PoseProposal
 from integrator.rig.best_pair import Places, Two, two_of
 
 POOR: Final = 0.6
-"""S in either view below which a pose fits badly: every twentieth of two performers does
+"""S in either view below which a pose fits badly: 5 % of two performers' poses do
 (docs/measurements.md)."""
 
 
 class Before(NamedTuple):
-    """What is remembered of the instant before."""
+    """Memory of the instant before."""
 
     memory: Memory | None = None
     pose: Vector | None = None
-    """(25,); None at the first."""
+    """(25,); None at the first instant."""
     landmarks: landmark_fusion.Memory | None = None
 
 
 class Sighting(NamedTuple):
-    """What the views show, and what it is held against."""
+    """The person in the views, and the rig and body to compare them with."""
 
     bdp: Bdp
     rig: Rig
@@ -46,37 +46,37 @@ class Sighting(NamedTuple):
     dt_s: float
     method: Method
     is_first: bool = False
-    """The body is a prior, by these silhouettes."""
+    """The body is a prior, fitted to these silhouettes."""
 
     @property
     def two(self) -> Two:
-        """The views of the pair: silhouettes propose by two."""
+        """The views of the pair: the silhouette network takes two."""
         return two_of(self.rig, self.seen, self.pair)
 
 
 class ProposedPose(NamedTuple):
-    """A pose of two views."""
+    """A pose from two views."""
 
     pose: Vector
     """(25,)"""
     joints_m: NDArray[np.float64]
     """(15, 3) world."""
     confidence: Vector
-    """(15,) how probably each joint is less than 50 mm off."""
+    """(15,) probability that each joint is less than 50 mm off."""
     memory: Memory
     landmarks: landmark_fusion.Memory | None
     seen: Seen
-    """The reports that it is of: without clutter, where that was left out."""
+    """The reports used: without clutter, where that was removed."""
     bdp: Bdp
-    """The body; another than before where it was a prior by silhouettes with clutter."""
+    """The body; a new one where it was a prior fitted to silhouettes with clutter."""
 
 
 def step(before: Before, now: Sighting) -> ProposedPose:
     """One instant of both views.
 
-    A pose in which the network is not confident and that fits badly is looked for in the
-    silhouettes without clutter, where the network is more confident in those. What the pictures
-    show of the joints is made one with it.
+    Where the network is not confident and the pose fits badly, the silhouettes without clutter are
+    tried; they are used if the network is more confident in them. The result is fused with the
+    joints that the pictures show.
     """
     known, was = _proposed(before, now), rest_pose() if before.pose is None else before.pose
     if now.method.clutter_removal and not known.is_confident:
@@ -100,7 +100,7 @@ def _proposed(before: Before, now: Sighting) -> PoseProposal:
 def _with_landmarks(
     before: Before, now: Sighting, known: PoseProposal
 ) -> tuple[PoseProposal, landmark_fusion.Memory | None]:
-    """The proposal made one with what the pictures show of the joints, where they show any."""
+    """The proposal fused with the joints that the pictures show, where they show any."""
     rays = rays_of(now.rig, now.seen)
     if rays is None:
         return known, before.landmarks

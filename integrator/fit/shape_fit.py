@@ -35,13 +35,14 @@ GROUPS: Final[tuple[tuple[tuple[str, ...], tuple[str, ...]], ...]] = (
     (("r_lower_arm", "l_lower_arm"), ("radius",)),
     (tuple(limb for limb in LIMBS if limb.endswith("arm")), ("height",)),
 )
-"""What is scaled together: limbs and their lengths. The heights of head, trunk and legs stay: they
-make up the stature, which the silhouette tells."""
+"""Groups of lengths that are scaled together. The heights of head, trunk and legs stay: their
+sum is the stature, which the silhouette determines."""
 
 LEAST_FIT: Final = 1.2
-"""Sum of S over both views; a silhouette that the body fits less is not of it alone."""
+"""Sum of S over both views below which a silhouette contains more than the body."""
 WIDEST: Final = 1.2
-"""Times the thesis's radii at that stature: a limb that would be wider covers something else."""
+"""Bounds of the radii, over the thesis's at that stature: a limb that would be wider covers
+something else."""
 FACTORS: Final = (0.85, 0.93, 1.08, 1.18)
 ROUNDS: Final = 3
 
@@ -51,24 +52,24 @@ RADII: Final = [
     *range(1, ARMS, PER_ELLIPTIC),
     *range(ARMS, LENGTHS, PER_ROUND),
 ]
-"""Where a body vector has the radii of the limbs."""
+"""Indices of the limbs' radii in a body vector."""
 MOST_SAMPLES: Final = 6
 APART: Final = 12
 """Frames between two samples: most of a second, in which a pose changes."""
 
 
 def step(opening: Opening, rig: Rig, seen: Seen, pose: Vector) -> Opening:
-    """One instant more of a person in view.
+    """Process one instant with a person in view.
 
-    The body is fitted to the first instant that shows the whole person in both views, and once
-    more to that and a few later ones together: a prior, or, once it is over, what the opening
-    posture told. An extra of `default` mode: the paper measures once.
+    The body is fitted to the first instant that shows the whole person in both views, and once more
+    to that and a few later ones together. It is a prior, or, after the opening posture, the
+    measured body. A departure of `default` mode: the paper measures once.
 
     Args:
-        opening: What is known of the body; returned as it is while it is being measured.
+        opening: The body so far; returned unchanged while it is being measured.
         rig: Two cameras.
         seen: Both views' reports.
-        pose: As found with the body so far, (25,).
+        pose: The pose of the body so far, (25,).
     """
     first, second = seen
     done = opening.under_way or len(opening.samples) == MOST_SAMPLES
@@ -120,7 +121,7 @@ def fit(
         views: (2, VIEW).
         seen: Silhouettes, packed, (n, 2, H, words).
         seen_px: Their numbers of pixels, (n, 2).
-        width: Of the pictures.
+        width: Width of the pictures.
     """
     total = 0.0
     for i in range(poses.shape[0]):
@@ -132,7 +133,7 @@ def fit(
 def _fit_inputs(
     rig: Rig, samples: tuple[Sample, ...]
 ) -> tuple[Floats, Floats, Bits, NDArray[np.int64], int]:
-    """Poses, views, silhouettes, their areas and their width, as `fit` wants them."""
+    """Poses, views, silhouettes, their areas and their width, in the form of `fit`."""
     each = [silhouettes_of(rig, sample.seen) for sample in samples]
     return (
         np.array([sample.pose for sample in samples]),

@@ -17,7 +17,7 @@ from common.rig.camera import Rig
 
 
 class Silhouettes(NamedTuple):
-    """What both views show of a person, in pictures of one size."""
+    """A person in both views, in pictures of one size."""
 
     views: Vector
     """(2, VIEW), true perspective."""
@@ -26,13 +26,13 @@ class Silhouettes(NamedTuple):
     seen_px: NDArray[np.int64]
     """Their numbers of pixels, (2,)."""
     width: int
-    """Of the pictures, pixels."""
+    """Width of the pictures, pixels."""
 
 
 def silhouettes_of(rig: Rig, seen: tuple[Observation, Observation]) -> Silhouettes:
     """The silhouettes of two reports, and the views of a rig.
 
-    Pictures of two sizes are both taken to be as wide and as high as the larger is.
+    Pictures of two sizes both get the larger width and height.
     """
     each = [words_of(person) for person in seen]
     rows, words = np.max([mask.shape for mask in each], axis=0)
@@ -48,7 +48,7 @@ def silhouettes_of(rig: Rig, seen: tuple[Observation, Observation]) -> Silhouett
 
 
 def poorest(pose: Vector, body: Vector, rig: Rig, seen: Seen) -> float:
-    """The lower of both views' S of a pose; 1 where a view shows no person."""
+    """The smaller S of a pose in both views; 1 where a view shows no person."""
     first, second = seen
     if first is None or second is None:
         return 1.0
@@ -74,11 +74,11 @@ def products(
     Args:
         body: Body vector.
         poses: (n, 25).
-        limbs: Those in which the poses differ, as bits; the rest is drawn once.
+        limbs: The limbs in which the poses differ, as bits; the rest is drawn once.
         views: (cameras, VIEW), true perspective.
         seen: The silhouettes, packed (cameras, H, words).
         seen_px: Their numbers of pixels, (cameras,).
-        width: Of the pictures, pixels.
+        width: Width of the pictures, pixels.
     """
     found = np.ones(poses.shape[0])
     for n in range(views.shape[0]):

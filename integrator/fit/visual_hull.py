@@ -1,7 +1,7 @@
-"""What two silhouettes show of one piece of space: a person, without other foreground.
+"""The common visual hull of two silhouettes: a person without other foreground.
 
 A place that both views show belongs to their common hull (Laurentini 1994); a person is one piece
-of it, and the largest and tallest. Shadows, glare and moved furniture are others, or none.
+of it, and the largest and tallest. Shadows, glare and moved furniture are other pieces, or none.
 """
 
 from typing import Final, NamedTuple
@@ -21,31 +21,32 @@ from integrator.rig.body_position import triangulate
 from integrator.rig.undistortion import undistorted
 
 CELL_M: Final = 0.05
-"""Thinner than an arm, so that it stays in one piece with its hand."""
+"""Side of a cell, metres: thinner than an arm, so that it stays connected to its hand."""
 ASIDE_CELLS: Final = 40
-"""2 m to each side of the middle of the silhouettes, which clutter draws away from the person."""
+"""Half width of the volume, metres, about the middle of the silhouettes, which clutter draws
+away from the person."""
 UP_CELLS: Final = 48
 FLOOR_M: Final = 0.05
-"""What is lower lies on the floor."""
+"""Height below which a cell lies on the floor, metres."""
 REACH_CELLS: Final = 10
-"""How far an arm may reach out of one of the pictures."""
+"""Largest distance that an arm may reach out of one of the pictures, metres."""
 CLUTTER_SHARE: Final = 0.03
-"""Less than this of a silhouette is left as it is: the hull is coarse."""
+"""Share of a silhouette that must be clutter to be removed: the hull is coarse."""
 
 
 class Cleaned(NamedTuple):
-    """A person as two views see them, in one piece, and whether anything else was in them."""
+    """A person in two views, as one piece, and whether anything else was in the views."""
 
     seen: TwoSeen
     clutter: bool
 
 
 def cleaned(rig: Rig, seen: TwoSeen) -> Cleaned:
-    """A person as two views see them, without what is no part of them.
+    """A person in two views, without what does not belong to them.
 
     Args:
         rig: Two cameras; their world has y up and its floor at 0.
-        seen: By each view, left as it is where one view alone shows somebody.
+        seen: The person in each view; returned unchanged where one view alone shows them.
     """
     first, second = seen
     if first is None or second is None:
@@ -61,11 +62,12 @@ def cleaned(rig: Rig, seen: TwoSeen) -> Cleaned:
 
 
 def one_piece(rig: Rig, masks: tuple[Mask, Mask]) -> tuple[Mask, Mask] | None:
-    """Both silhouettes' parts that show the largest piece of their hull; None where there is none.
+    """The parts of both silhouettes that show the largest piece of their hull; None where there is
+    none.
 
     Args:
         rig: Two cameras.
-        masks: Not empty.
+        masks: The silhouettes, not empty.
     """
     first, second = (_median_px(mask) for mask in masks)
     middle_m = triangulate((rig.cameras[0], rig.cameras[1]), (first, second))
@@ -95,9 +97,10 @@ def _median_px(mask: Mask) -> tuple[float, float]:
 
 @compiled
 def _carve(full: NDArray[np.int8], corner_m: Vector, view: Vector, mask: Mask) -> None:
-    """Count the views that see each cell covered; -1 where one sees the room there.
+    """Count the views in which each cell is covered; -1 where one sees background there.
 
-    What one view covers and the other has outside its picture may be an arm that reaches out.
+    A place that one view covers and that is outside the other's picture may be an arm that reaches
+    out.
     """
     height, width = mask.shape
     for i in range(full.shape[0]):
@@ -114,9 +117,9 @@ def _carve(full: NDArray[np.int8], corner_m: Vector, view: Vector, mask: Mask) -
 
 
 def _largest(full: NDArray[np.int8]) -> NDArray[np.int64]:
-    """Cells, (n, 3), of the piece that both views see with the most volume times height.
+    """Cells, (n, 3), of the piece in both views with the most volume times height.
 
-    And of what one view sees next to it, an arm that reaches out of the other's picture.
+    In addition the adjacent cells of one view: an arm that reaches out of the other's picture.
     """
     from scipy import ndimage  # takes as long to import as half of all else
 
@@ -133,12 +136,12 @@ def _largest(full: NDArray[np.int8]) -> NDArray[np.int64]:
 
 
 def _cells(where: NDArray[np.bool_]) -> NDArray[np.int64]:
-    """The cells, (n, 3), where something holds; np.argwhere takes ten times as long."""
+    """The cells, (n, 3), where a condition holds; np.argwhere takes ten times as long."""
     return np.stack(np.unravel_index(np.flatnonzero(where), where.shape), axis=1)
 
 
 def _shown(places_m: NDArray[np.float64], camera: Camera, mask: Mask) -> Mask:
-    """Where a view shows places, each as large as a cell is there."""
+    """The area in which a view shows cells at given places."""
     height, width = mask.shape
     u, v = project(camera, places_m).T  # nan behind the camera, which is in no picture
     inside = (u >= 0) & (v >= 0) & (u < width) & (v < height)

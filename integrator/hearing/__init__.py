@@ -1,1 +1,1 @@
-"""What the integrator's process hears, and when: the room's start, the viewers' reports."""
+"""Input of the integrator's process: the room's start, the viewers' reports."""

@@ -1,4 +1,4 @@
-"""How late each view's reports come: what its link always takes, not what a hiccup does."""
+"""Delay of each view's reports: its link's constant part, not single hiccups."""
 
 from typing import Final, NamedTuple
 
@@ -6,40 +6,41 @@ from common.bus.messages import ViewerNumber
 from integrator.pairing import with_item
 
 LOOKS_AT: Final = 30
-"""Moments at which reports came: the quickest of so many tells what the link takes."""
+"""Number of moments at which reports came; their smallest delay is the link's."""
 LONGEST_S: Final = 0.5
-"""Nobody is waited for longer: bodies that come later than that are of little use live."""
+"""Longest wait for a view, seconds: later bodies are of little use live."""
 SLOW_PERIODS: Final = 2.0
-"""A link that takes so many periods is worth a word."""
+"""Delay of a link, frame periods, from which on it is reported."""
 
 
 class Link(NamedTuple):
-    """One view's."""
+    """One view's link."""
 
     came_s: float = float("-inf")
-    """When its last report came."""
+    """Time of its last report."""
     late_s: tuple[float, ...] = ()
-    """How late the last ones were. Of those that came at once, after a cut say, the least."""
+    """Delays of the last reports; of reports that came together, as after an interruption, the
+    smallest."""
     is_told: bool = False
-    """That it is slow."""
+    """True: it was reported as slow."""
 
 
 class State(NamedTuple):
-    """What is known of each view's link."""
+    """The state of every view's link."""
 
     period_s: float
     links: tuple[Link, ...] = (Link(), Link())
     news: tuple[str, ...] = ()
-    """What was told, a line each."""
+    """The reports so far, one line each."""
 
 
 def init(period_s: float, cameras: int = 2) -> State:
-    """Nothing was heard of so many views."""
+    """The state of that many views before any report."""
     return State(period_s, (Link(),) * cameras)
 
 
 def heard(state: State, viewer: ViewerNumber, now_s: float, late_s: float) -> State:
-    """A report came now, so long after its picture was taken."""
+    """Process a report that came now, with its delay since capture."""
     link = state.links[viewer - 1]
     late = (*link.late_s, late_s)
     if now_s - link.came_s < state.period_s / 2 and link.late_s:
@@ -48,17 +49,17 @@ def heard(state: State, viewer: ViewerNumber, now_s: float, late_s: float) -> St
 
 
 def lag_s(state: State) -> float:
-    """How long the slowest view's reports are to be waited for beyond what others are."""
+    """How much longer the slowest view's reports are waited for than others."""
     slowest = max((min(link.late_s) for link in state.links if link.late_s), default=0.0)
     return min(LONGEST_S, max(0.0, slowest))
 
 
 def told(state: State, since_s: float) -> tuple[State, list[str]]:
-    """What is to be said of slow links, once each time that one becomes so.
+    """Lines about slow links, one each time that a link becomes slow.
 
     Args:
-        state: As it is.
-        since_s: Seconds since the run began.
+        state: The present state.
+        since_s: Time since the run began.
     """
     lines: list[str] = []
     for viewer, link in enumerate(state.links, start=1):

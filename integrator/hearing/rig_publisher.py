@@ -1,4 +1,4 @@
-"""What a run has said of its rig and views already."""
+"""Publishes the run's rig and warnings about views, each once."""
 
 from common.bus.bus import Bus
 from common.bus.control_messages import Cameras
@@ -7,16 +7,16 @@ from integrator.merge_state import State
 
 
 class RigPublisher:
-    """What was told of the run already."""
+    """What was published so far."""
 
     def __init__(self, bus: Bus) -> None:
-        """Nothing."""
+        """Nothing yet."""
         self._bus, self._calibration = bus, -1
         self._news: tuple[str, ...] = ()
         self._doubt = ""
 
     def rig(self, state: State, late_s: float) -> None:
-        """Tell the rig as soon as it is known, and each that comes after it."""
+        """Publish the rig as soon as it is known, and each later one."""
         if state.rig is not None and state.calibration > self._calibration:
             self._bus.publish(
                 Cameras(
@@ -29,11 +29,11 @@ class RigPublisher:
             self._calibration, self._doubt = state.calibration, ""
 
     def doubts(self, state: State) -> list[str]:
-        """That the rig in use is not believable, as it was first seen."""
+        """The first report that the rig in use is not believable."""
         self._doubt = self._doubt or diagnostics.doubt(state)
         return [self._doubt] if self._doubt else []
 
     def is_new(self, news: tuple[str, ...]) -> bool:
-        """Whether there are other news than before."""
+        """Whether there is news."""
         before, self._news = self._news, news
         return news != before

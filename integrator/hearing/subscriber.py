@@ -1,4 +1,4 @@
-"""What the viewers say, by the instant."""
+"""The viewers' reports, instant by instant."""
 
 import logging
 import time
@@ -16,23 +16,24 @@ from integrator.live_rig.rig_change import set_back
 
 HEAR_S: Final = 0.02
 LOOK_S: Final = 0.5
-"""Among reports of which one always waits, who came or went is believed after so long."""
+"""Longest time, seconds, until arrivals and departures are processed although reports keep
+coming."""
 ASLEEP_S: Final = 0.5
-"""A round that took longer was stopped, or starved: what was said meanwhile is on its way still,
-and its speakers are not to blame."""
+"""Duration of a round, seconds, above which this process was stopped or starved: messages are
+still on their way, and their senders are not to blame."""
 AWAKE_S: Final = 0.3
-"""For so long after it nobody is called late: all that waits is taken in first, and caught up."""
+"""Time after it, seconds, in which no viewer is called late: all that waits is processed first."""
 GATHER_S: Final = 0.3
-"""Started again in the middle of a run, it waits so long for what the viewers say once more, and
-takes it in by its time."""
+"""Time, seconds, that a restarted integrator waits for the viewers' repeated reports, which it
+sorts by time."""
 OVERDUE_PERIODS: Final = 2.0
-"""A report goes on without another of its instant that is two frames late, as do those after it."""
+"""Delay in frames after which an instant is completed without a missing report."""
 
 log = logging.getLogger(__name__)
 
 
 class Subscriber:
-    """What the viewers say, by the instant, and who of them is there."""
+    """The viewers' reports, instant by instant, and which viewers are present."""
 
     def __init__(
         self,
@@ -44,49 +45,49 @@ class Subscriber:
         start_s: float | None = None,
         cameras: int = 2,
     ) -> None:
-        """Listen to viewers of a rig of so many cameras from now on; the run may have begun, and
-        some viewers have ended, before."""
+        """Subscribe to the viewers of a rig of that many cameras; the run may have begun, and
+        some viewers ended, before."""
         self.starter = Starter(frozenset(viewers), wait_s, start_s)
         self._gathers = start_s is not None
-        """It was started again, and has yet to wait for what is said once more."""
+        """It was restarted, and still waits for repeated reports."""
         self._commands = bus.subscribe(Command)
         self._numbers = {f"viewer {number}": number for number in viewers}
         self._reports, self._ended = bus.subscribe(View), bus.subscribe(Ended)
         self._alive = bus.watch_alive()
         self._moves: list[Alive | Ended] = []
-        """Who came, went and ended, until all is in that they reported before."""
+        """Process arrivals, departures and ends, once all earlier reports are in."""
         self._paired = pairing.init(period_s, viewers, cameras)
         self._present = presence.init(period_s, viewers, cameras)
         self._links = link_lag.init(period_s, cameras)
         self._period_s, self._overdue_s = period_s, OVERDUE_PERIODS * period_s
         self.late_s = 0.0
-        """By how much the times of view 2 are set back."""
+        """Time by which the times of view 2 are set back."""
         self._looked_s = self._round_s = time.monotonic()
         self._judges_s = 0.0
-        """From then on it is asked who is late or silent."""
+        """From now on late and silent viewers are noticed."""
         self.over: tuple[Ended, ...] = ()
-        """What viewers said that have ended."""
+        """Viewers that have reported their end."""
         for said in over:
             self._end(said, self._looked_s)
         bus.answer(ClockQuestion, self.starter.answer)
 
     @property
     def going(self) -> bool:
-        """Whether any viewer may still say something."""
+        """Whether any viewer may still report."""
         return presence.going(self._present, time.monotonic())
 
     @property
     def news(self) -> tuple[str, ...]:
-        """Which views were lost and found, and why; whose link is slow."""
+        """Lines about views lost and found, with causes, and about slow links."""
         return (*self._present.news, *self._links.news)
 
     @property
     def _wait_s(self) -> float:
-        """How long after its picture a report goes on without others of its instant."""
+        """How long after capture a report waits for the others of its instant."""
         return self._overdue_s + link_lag.lag_s(self._links)
 
     def instants(self) -> list[Instant]:
-        """What is complete now, or overdue; waits a moment for a report."""
+        """The instants that are complete or overdue now; waits a moment for a report."""
         complete: list[Instant] = []
         if not self._moves:
             self._looked_s = time.monotonic()
@@ -110,8 +111,8 @@ class Subscriber:
             self._paired, more = pairing.step(self._paired, report)
             complete += more
         if not reports or now_s - self._looked_s > LOOK_S:
-            # What a viewer said before it went comes first: whoever moved had done so before a wait
-            # for a report began that came to nothing, unless there is always a report.
+            # A viewer's reports come before its departure: they are processed first, by a wait that
+            # ends without a report, unless reports keep coming.
             complete += self._who_came_and_went(now_s)
         if self._is_caught_up(reports, now_s):
             wait_s = self._wait_s + abs(self.late_s)
@@ -124,7 +125,8 @@ class Subscriber:
         return complete
 
     def _is_caught_up(self, reports: list[View], now_s: float) -> bool:
-        """Whether who has said nothing can be held to it: this process has listened itself."""
+        """Whether silence may be held against a viewer: this process has been receiving all
+        along."""
         if now_s - self._round_s > ASLEEP_S:
             self._judges_s = now_s + AWAKE_S
         self._round_s = now_s
@@ -132,14 +134,14 @@ class Subscriber:
         return fresh and now_s >= self._judges_s
 
     def commands(self) -> list[Command]:
-        """What the person at the page asks for since; that they are there is asked for too."""
+        """Commands from the page since the last call; its presence is asked for too."""
         asked = self._commands.drain()
         if any(command.what == "start" for command in asked):
             self.starter.looked_at()
         return asked
 
     def counts(self) -> dict[str, int]:
-        """What was lost so far, as a Pulse tells it."""
+        """Losses so far, for a Pulse."""
         return {
             "dropped": self._paired.dropped + self._reports.dropped,
             "late": self._paired.late,
@@ -166,7 +168,7 @@ class Subscriber:
         return released
 
     def _end(self, said: Ended, now_s: float) -> list[Instant]:
-        """A viewer has said its last; what waited for it is released."""
+        """A viewer has ended; what waited for it is released."""
         self._present = presence.ended(self._present, said, now_s)
         self.over = (*self.over, said)
         self._paired, released = pairing.end(self._paired, said.viewer)

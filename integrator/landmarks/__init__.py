@@ -1,1 +1,1 @@
-"""What the pictures themselves show of the joints, made one with what the outlines propose."""
+"""The landmarks of the pictures, fused with the silhouettes' proposal."""

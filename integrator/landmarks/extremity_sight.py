@@ -1,4 +1,4 @@
-"""Nose, heels, toes and knuckles where a source of landmarks sees them; else by the body's rule."""
+"""Nose, heels, toes and knuckles from landmarks where they are seen; else by the body's rule."""
 
 from typing import Final
 
@@ -13,32 +13,32 @@ from common.rig.camera import Rig, arrays_of, project, rays
 Floats = NDArray[np.float64]
 
 LEAST: Final = 0.3
-"""Less sure a point is not looked at."""
+"""Confidence below which a point is ignored."""
 FARTHEST_SHARE: Final = 0.15
-"""Of the stature: farther from where the body has it, a point is somebody else's or a mistake."""
+"""Distance from the body's own place, statures, beyond which a point is a mistake or another
+person's."""
 APART_SHARE: Final = 0.06
-"""Of the stature: lines of sight that miss each other by more do not see one place."""
+"""Largest gap between two lines of sight to one place, statures."""
 DEPTH_BY_RULE: Final = 0.5
-"""Share of its confidence that is left where one view alone sees a point: how far away it is
-follows from the body."""
+"""Factor on the confidence where one view alone sees a point: its depth follows from the body."""
 _OTHER: Final = [
     EXTREMITY_NAMES.index({"l_": "r_", "r_": "l_"}.get(name[:2], name[:2]) + name[2:])
     for name in EXTREMITY_NAMES
 ]
 _PARTS: Final = (("l_heel", "l_toe", "r_heel", "r_toe"), ("l_knuckle", "r_knuckle"))
-"""Feet and hands: a view may take either for the other side's."""
+"""Indices of feet and hands: a view may confuse left and right."""
 
 
 def seen_extremities(
     rule_m: Floats, rig: Rig, seen: Seen, stature_m: float
 ) -> tuple[Floats, Floats]:
-    """Where they are, (7, 3), and how sure that is, (7,): 0 where nobody measured it.
+    """Places, (7, 3), and confidence, (7,): 0 where no view measured it.
 
     Args:
-        rule_m: (7, 3) where the body has them.
+        rule_m: (7, 3) places by the body's rule.
         rig: V cameras without distortion.
-        seen: Of each view, as without distortion.
-        stature_m: From sole to crown.
+        seen: The person in each view, without distortion.
+        stature_m: Height from sole to crown.
     """
     sure, nearest = np.zeros((len(seen), len(rule_m))), np.zeros((len(seen), len(rule_m), 3))
     for view, (camera, person) in enumerate(zip(rig.cameras, seen, strict=True)):
@@ -70,9 +70,9 @@ def _own_sides(shown: Landmarks, rule_px: Floats) -> tuple[Floats, Floats]:
 def _met(
     rule_m: Floats, rig: Rig, lines: Floats, sure: Floats, stature_m: float
 ) -> tuple[Floats, Floats]:
-    """The middle between two lines of sight, or the place of one that is nearest to the rule's.
+    """The middle between two lines of sight, or the point of a single one nearest to the rule's.
 
-    Of more than two views each point is of the two that are surest of it.
+    With more than two views each point comes from the two that are surest of it.
     """
     centres = np.stack([arrays_of(camera).centre for camera in rig.cameras])
     surest = np.sort(np.argsort(-sure, axis=0, kind="stable")[:2], axis=0)
@@ -89,7 +89,7 @@ def _met(
 def _met_by_two(
     rule_m: Floats, centres_m: Floats, lines: Floats, sure: Floats, stature_m: float
 ) -> tuple[Floats, Floats]:
-    """`_met` by views that stand at (2, 3), with lines (2, n, 3) and confidence (2, n)."""
+    """`_met` for views at (2, 3), with lines (2, n, 3) and confidence (2, n)."""
     alone = [
         centre + ((rule_m - centre) * line).sum(axis=1, keepdims=True) * line
         for centre, line in zip(centres_m, lines, strict=True)

@@ -27,7 +27,7 @@ ANEW: Final = 0.1
 TRUST: Final = 0.6
 """Exponent of an instant's likelihood: consecutive instants are correlated."""
 FLIP_THRESHOLD: Final = 0.7
-"""Probability at which a proposal is flipped; below 1 less this it is flipped no longer."""
+"""Probability above which a proposal is flipped; below one minus this it is no longer flipped."""
 
 
 def step(
@@ -36,9 +36,9 @@ def step(
     """The probability that an instant's proposal has front for back, and whether it is flipped.
 
     Args:
-        before: The same of the instant before; None at the first.
+        before: The result of the instant before; None at the first.
         joints_m: (12, 3) world, as proposed.
-        rays: Of the views; their facings count.
+        rays: The views' rays; their facings count.
     """
     was, turned = (RARELY, False) if before is None else before
     now = (1.0 - ANEW) * was + ANEW * RARELY
@@ -55,7 +55,7 @@ def step(
 
 
 def yaw_deg(rotation: NDArray[np.float64], joints_m: NDArray[np.float64]) -> float:
-    """Which way shoulders and hips face, as `Landmarks.facing_deg`, (-180, 180].
+    """Direction of shoulders and hips, as `Landmarks.facing_deg`, (-180, 180].
 
     Args:
         rotation: (3, 3) from the world to the camera.
@@ -70,15 +70,16 @@ def yaw_deg(rotation: NDArray[np.float64], joints_m: NDArray[np.float64]) -> flo
 
 
 def confused(confidence: float) -> float:
-    """How probably a view that is so sure which way somebody faces took front for back; 0: it does
-    not tell."""
+    """Probability that a view with this confidence in the facing took front for back; 0: it
+    reports no facing."""
     if confidence <= 0.0:
         return UNTOLD
     return min(0.5, 1.0 / (1.0 + (confidence / (1.0 - confidence + 1e-9)) ** SHARPER))
 
 
 def _told(said_deg: float, facing_deg: float, wrong: float) -> float:
-    """How probably a view says so of somebody who faces there, by how often it is confused."""
+    """Likelihood of a view's facing for a person who faces a given way, by how often it is
+    confused."""
     plain = (1.0 - wrong) * _near(said_deg - facing_deg)
     return plain + wrong * _near(said_deg - (180.0 - facing_deg)) + UNIFORM_FLOOR
 

@@ -1,4 +1,4 @@
-"""The most probable place of a joint, by the silhouettes' proposal and each view's landmarks."""
+"""The most probable place of a joint, from the silhouettes' proposal and each view's landmarks."""
 
 import math
 from typing import Final, NamedTuple
@@ -11,10 +11,10 @@ from common.compiled import compiled
 
 
 class Spread(NamedTuple):
-    """How far from the truth one kind of evidence is: a mixture of three parts.
+    """Error distribution of one kind of evidence: a mixture of three parts.
 
-    It is right, roughly right, or of something else, which may be anywhere: that part is uniform,
-    and does not pull.
+    The evidence is right, roughly right, or belongs to something else, which may be anywhere: that
+    part is uniform, and exerts no pull.
     """
 
     right: float
@@ -24,32 +24,32 @@ class Spread(NamedTuple):
     roughly: float
     """Standard deviation of the part that is roughly right."""
     often: float
-    """Share of what is not right that is roughly right; a doubted proposal has less of it."""
+    """Share of roughly right among what is not right; a doubted proposal has less of it."""
     far: float
     """Half width of the uniform part, in standard deviations of the roughly right part."""
 
     def right_of(self, confidence: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Standard deviation of the right part, by the confidence of its given."""
+        """Standard deviation of the right part, by the evidence's confidence."""
         return self.right + self.unsure * (1.0 - confidence)
 
 
 PROPOSED: Final = Spread(right=0.014, unsure=0.061, roughly=0.09, often=0.95, far=8)
 """Spread of joints that silhouettes propose, metres."""
 SHOWN: Final = Spread(right=0.012, unsure=0.035, roughly=0.051, often=0.55, far=2)
-"""Spread of landmarks beside their ray, statures. It and the spreads above were chosen on two
+"""Spread of landmarks beside their ray, statures. This and the spreads above were chosen on two
 performers and synthetic people (docs/measurements.md)."""
 OUTLIER_PENALTY: Final = 4.5
 """Penalty of the uniform part's log probability, while nothing is doubted."""
 LEAST, MOST = 0.01, 0.98
-"""Limits of the probability that any evidence is right."""
+"""Bounds of the probability that any evidence is right."""
 ROUNDS: Final = 4
 """Rounds of weighted least squares from each start."""
 SECOND: Final = 0.02
-"""Second places of less confidence are left out."""
+"""Confidence below which second places are left out."""
 HELD: Final = 4.0
-"""Precision of a proposed joint where no evidence holds it, 1 / m^2."""
+"""Precision of a proposed joint without other evidence, 1 / m^2."""
 NONE, BOTH = -1, 2
-"""Index that stands for no ray of a view, and the number of rays of a view."""
+"""Index for no ray of a view, and the number of rays of a view."""
 
 
 class Evidence(NamedTuple):
@@ -106,7 +106,8 @@ def most_probable(given: Evidence, place_m: Vector, precision: Vector) -> float:
 
 @compiled
 def _next(taken: NDArray[np.int64]) -> bool:
-    """Set the next choice of rays, (V,) of NONE or a ray of at most two views; False at the end.
+    """Advance to the next choice of rays, (V,) of NONE or a ray of at most two views; False at the
+    end.
 
     The last view's ray changes first.
     """
@@ -124,7 +125,7 @@ def _next(taken: NDArray[np.int64]) -> bool:
 
 @compiled
 def _start(given: Evidence, taken: NDArray[np.int64], here: Vector) -> bool:
-    """Set the start for the rays that are taken; False where there is none."""
+    """Set the start for a choice of rays; False where there is none."""
     here[:] = given.proposed_m
     one = other = NONE
     for view in range(len(taken)):

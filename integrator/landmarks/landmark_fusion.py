@@ -1,4 +1,4 @@
-"""The joints of an instant, fused of the silhouettes' proposal and all views' landmarks."""
+"""The joints of an instant, fused from the silhouettes' proposal and all views' landmarks."""
 
 from typing import Final, NamedTuple, TypeVar
 
@@ -32,37 +32,37 @@ from integrator.proposal.network_weights import JOINTS
 from integrator.proposal.pose_network import OTHER_SIDES
 
 ARMS, LEGS = slice(0, 6), slice(6, 12)
-"""Places of the arms and the legs in JOINTS."""
+"""Indices of the arms and the legs in JOINTS."""
 PROPOSED_RIGHT: Final = (0.18, 0.9)
-"""Confidence in a proposed joint at which it is taken for right with probability 0 and 1."""
+"""Confidences in a proposed joint that mean probability 0 and 1 of being right."""
 SHOWN_RIGHT: Final = (0.02, 0.91)
-"""Confidence in a landmark at which it is taken for right with probability 0 and 1."""
+"""Confidences in a landmark that mean probability 0 and 1 of being right."""
 FIRM_M: Final = 0.02
 PLATT: Final = (2.15, 4.25)
-"""Platt scaling of a fused joint's confidence: its logit at a standard deviation of FIRM_M, and the
-fall as that grows e-fold. Fitted to joints less than 50 mm off (docs/measurements.md)."""
+"""Platt scaling of a fused joint's confidence: its logit at a standard deviation of FIRM_M, and
+its fall for each e-fold growth. Fitted to joints less than 50 mm off (docs/measurements.md)."""
 Probability = TypeVar("Probability", float, Vector)
 _DIAGONAL: Final = [0, 3, 5]
 
 
 class Memory(NamedTuple):
-    """What is remembered between instants."""
+    """Memory between instants."""
 
     turned: tuple[float, bool]
     """Probability that proposals have front for back, and whether they are flipped."""
     exchanges: Exchanges
     exchanged: Exchanged
-    """The decision on them."""
+    """Posterior of the exchanged sides."""
     lengths_m: Vector
-    """(10,) of `limb_springs.ENDS`."""
+    """(10,) lengths of `limb_springs.ENDS`."""
     misfit: Misfit
-    """Distance of recent proposals from the rays."""
+    """Residuals of recent proposals against the rays."""
     displaced: Vector
-    """(4,) offset of recent proposals from the rays, as a whole."""
+    """(4,) common offset of recent proposals from the rays."""
 
 
 class Proposal(NamedTuple):
-    """The joints that silhouettes propose, and how far to believe them."""
+    """The joints proposed by the silhouettes, and their reliability."""
 
     joints_m: NDArray[np.float64]
     """(12, 3) world."""
@@ -80,7 +80,7 @@ class Fused(NamedTuple):
     joints_m: NDArray[np.float64]
     """(12, 3) world."""
     confidence: Vector
-    """(12,) how probably each is less than 50 mm off."""
+    """(12,) probability that each is less than 50 mm off."""
     exchanged: Exchanged
     memory: Memory
 
@@ -94,17 +94,17 @@ def step(
 ) -> Fused:
     """One instant: each joint at its most probable place by the proposal and all views.
 
-    A proposal with front for back, by the views' facings, has its sides exchanged. Proposals that
-    were lately off the rays get a wider spread and less confidence; an offset that all their joints
-    share is taken back. Whether a view exchanged left and right is decided for the arms as a whole
-    and for the legs as a whole. Then limbs are drawn to their lengths.
+    A proposal with front for back, by the views' facings, gets its sides exchanged. Proposals whose
+    recent residuals are large get a wider spread and less confidence; an offset that all their
+    joints share is subtracted. Whether a view exchanged left and right is decided for the arms as a
+    whole and for the legs as a whole. Then limbs are pulled to their lengths.
 
     Args:
         before: The memory of the instant before; None at the first.
         proposed_m: (12, 3) world, of JOINTS.
         confidence: (12,) probability that each is less than 50 mm off.
-        rays: Of the views' landmarks.
-        stature_m: Of the person.
+        rays: Rays of the views' landmarks.
+        stature_m: The person's stature.
     """
     turned = front_back_flip.step(None if before is None else before.turned, proposed_m, rays)
     if turned[1]:
@@ -132,7 +132,7 @@ def step(
 def _with_own_sides(
     before: Memory | None, proposal: Proposal, rays: Rays, stature_m: float
 ) -> tuple[Exchanges, Exchanged, NDArray[np.float64], NDArray[np.float64]]:
-    """Which sides each view exchanged, and with that the joints (12, 3) and their precision."""
+    """The sides that each view exchanged, and the resulting joints (12, 3) with their precision."""
     views = len(rays.centres_m)
     known = None if before is None else before.exchanges
     usual = (_aside(proposal.joints_m, rays.centres_m), _confused(rays))
@@ -167,11 +167,11 @@ def _with_own_sides(
 
 
 def _each_way(values: Vector, was: NDArray[np.int_]) -> NDArray[np.float64]:
-    """(V, 2) of each view not exchanged and exchanged, the others as they were.
+    """(V, 2) log likelihood of each view not exchanged and exchanged, the others as they were.
 
     Args:
-        values: (1 + V,) as all were, and with each view's the other way.
-        was: (V,) how they were; 1: exchanged.
+        values: (1 + V,) all as they were, and with each view's changed.
+        was: (V,) previous decisions; 1: exchanged.
     """
     both = np.stack([np.full(len(was), values[0]), values[1:]], axis=1)
     return np.where(was[:, None] == 1, both[:, ::-1], both)
@@ -180,7 +180,7 @@ def _each_way(values: Vector, was: NDArray[np.int_]) -> NDArray[np.float64]:
 def _weighed(
     proposal: Proposal, rays: Rays, stature_m: float, ways: NDArray[np.int_]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """`_modes` of what confidences say of how sure and how wide each witness is."""
+    """`_modes` with each evidence's probability and spread from its confidence."""
     shown = _shown(rays)
     others = np.where(rays.others_confidence < SECOND, 0.0, rays.others_confidence)
     confidence, wider_m = proposal.confidence, proposal.wider_m
@@ -254,20 +254,20 @@ def _modes(
     stature_m: float,
     ways: NDArray[np.int64],
 ) -> tuple[Floats, Floats, Floats]:
-    """Of each joint, for each way in which views may have exchanged sides: how probable its place
-    is, log (12, S), the place (12, S, 3) and its precision (12, S, 6).
+    """For each joint and each choice of views with exchanged sides: the log probability of its
+    place (12, S), the place (12, S, 3) and its precision (12, S, 6).
 
     Args:
         proposed_m: (12, 3)
-        sure: (12,) how probably each is right, and
-        spreads_m, roughly_m: (12,) how far off it is then, or if roughly right.
-        often: How often it is roughly right, where it is not right.
+        sure: (12,) probability that each is right, and
+        spreads_m, roughly_m: (12,) its standard deviation if right, or if roughly right.
+        often: Probability that it is roughly right, if it is not right.
         centres_m: (V, 3) the cameras.
-        directions: (V, 12, BOTH, 3) of their rays.
-        seen: (V, 12, BOTH) how probably each ray is right; 0: there is none.
-        seen_m: (V, 12) how far off it is then.
-        stature_m: Of the person.
-        ways: (2, S, V) of arms and of legs; 1: that view exchanged them.
+        directions: (V, 12, BOTH, 3) directions of their rays.
+        seen: (V, 12, BOTH) probability that each ray is right; 0: there is none.
+        seen_m: (V, 12) standard deviation of a right ray.
+        stature_m: The person's stature.
+        ways: (2, S, V) exchanges of arms and of legs; 1: that view exchanged them.
     """
     n, views, joints_of_part = len(proposed_m), len(centres_m), len(proposed_m) // 2
     values, places_m = np.empty((n, ways.shape[1])), np.empty((n, ways.shape[1], 3))

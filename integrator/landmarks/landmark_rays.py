@@ -1,4 +1,4 @@
-"""Landmarks as rays in the room."""
+"""Landmarks as rays in the world."""
 
 from typing import Final, NamedTuple
 
@@ -11,28 +11,28 @@ from common.rig.camera import Rig, arrays_of, rays
 from integrator.proposal.network_weights import JOINTS
 
 AT: Final = [JOINT_NAMES.index(name) for name in JOINTS]
-"""Where the twelve joints that are proposed stand among the landmarks."""
+"""Indices of the twelve proposed joints among the landmarks."""
 
 
 class Rays(NamedTuple):
-    """Where the views see the twelve joints that are proposed too."""
+    """The rays on which the views see the twelve proposed joints."""
 
     centres_m: NDArray[np.float64]
     """(V, 3) the cameras."""
     directions: NDArray[np.float64]
     """(V, 12, 3) unit length."""
     confidence: NDArray[np.float64]
-    """(V, 12) of `Landmarks.confidence`; 0: that view has no landmarks."""
+    """(V, 12) `Landmarks.confidence`; 0: that view has no landmarks."""
     others: NDArray[np.float64]
-    """(V, 12, 3) of where else a view may see them, as `directions`."""
+    """(V, 12, 3) rays of the second candidates, as `directions`."""
     others_confidence: NDArray[np.float64]
-    """(V, 12) likewise; 0: that view has one place alone."""
+    """(V, 12) their confidence; 0: that view has one place alone."""
     rotations: NDArray[np.float64]
     """(V, 3, 3) from the world to each camera."""
     facing_deg: tuple[float, ...]
-    """0 towards the camera, 90 to the right of its picture."""
+    """Facing: 0 towards the camera, 90 to the right of its picture."""
     facing_confidence: tuple[float, ...]
-    """0: that view does not tell."""
+    """Confidence of the facing; 0: that view reports none."""
 
 
 def rays_of(rig: Rig, seen: Seen) -> Rays | None:
@@ -40,7 +40,7 @@ def rays_of(rig: Rig, seen: Seen) -> Rays | None:
 
     Args:
         rig: V cameras without distortion.
-        seen: Of each view, as without distortion; None where it has nobody.
+        seen: The person in each view, without distortion; None where it has none.
     """
     shown = [None if person is None else person.landmarks for person in seen]
     if all(landmarks is None for landmarks in shown):

@@ -21,7 +21,8 @@ TRUST: Final = 0.67
 """Exponent of an instant's likelihood: the errors of its joints are correlated."""
 
 JOINTLY: Final = 3
-"""Number of views up to which all exchanges are weighed jointly; with more, each view's alone."""
+"""Number of views up to which all exchanges are weighed jointly; with more, each view
+separately."""
 
 Exchanges = Vector
 """Posterior of the exchanges: (2,) * 2V for up to JOINTLY views, all views' arms before all views'
@@ -32,7 +33,7 @@ class Exchanged(NamedTuple):
     """Which views exchanged left and right."""
 
     arms: tuple[int, ...]
-    """One number a view; 1: exchanged."""
+    """One number per view; 1: exchanged."""
     legs: tuple[int, ...]
 
 
@@ -47,7 +48,7 @@ def step(
 
     Args:
         before: Posterior of the instant before; None at the first.
-        arms: (2,) * V log likelihood of the arms' joints, by which views exchanged them.
+        arms: (2,) * V log likelihood of the arms' joints, by the views that exchanged them.
         legs: (2,) * V log likelihood of the legs' joints.
         aside: How much each view sees a profile: 0 front or back, 1 profile.
         confused: Probability that each view took front for back.
@@ -72,13 +73,13 @@ def step_each(
     aside: tuple[float, ...],
     confused: tuple[float, ...],
 ) -> tuple[Exchanges, Exchanged]:
-    """One instant of such a model of each view by itself.
+    """One instant of such a model for each view separately.
 
     Args:
         before: As for `step`, (V, 2, 2).
         arms: (V, 2) log probability of all the arms' joints, exchanged or not by one view, the
             others as they were.
-        legs: (V, 2) of the legs'.
+        legs: (V, 2) the same for the legs.
         aside: As for `step`.
         confused: As for `step`.
     """
@@ -96,7 +97,7 @@ def _each(views: tuple[float, ...]) -> list[tuple[float, ...]]:
 
 
 def _drawn_anew(known: Exchanges, usual: Vector, view: tuple[int, int]) -> Exchanges:
-    """The prediction of the next instant, in which one view's axes may be drawn anew."""
+    """The prediction for the next instant, in which one view's axes may be drawn anew."""
     found: Exchanges = (1 - ANEW) * known + ANEW * usual * known.sum(axis=view, keepdims=True)
     return found
 

@@ -1,4 +1,4 @@
-"""Limbs keep their lengths: joints that were found one by one are drawn to where they do."""
+"""Limbs keep their lengths: joints found separately are pulled to where they do."""
 
 import math
 from typing import Final
@@ -10,9 +10,9 @@ from common.compiled import compiled
 from integrator.proposal.network_weights import JOINTS
 
 SPRING_M: Final = 0.02
-"""Standard deviation of a limb's length about what it was before."""
+"""Standard deviation of a limb's length about its remembered one."""
 LEARNT: Final = 0.05
-"""Share of what is remembered of lengths that one instant replaces."""
+"""Weight of one instant in the remembered lengths."""
 ROUNDS: Final = 2
 
 _PAIRS: Final = (("shoulder", "elbow"), ("elbow", "wrist"), ("hip", "knee"), ("knee", "ankle"))
@@ -28,17 +28,18 @@ _LIMBS: Final = 2 * len(_PAIRS)
 USUAL: Final = np.array([0.16, 0.16, 0.145, 0.145, 0.25, 0.25, 0.245, 0.245, 0.205, 0.12])
 """(10,) lengths in statures, of adults."""
 UNLIKE: Final = 1.3
-"""Times longer or shorter is nobody's. Lengths are learnt from joints that were drawn to what was
-learnt: where one camera tells no depth, what was too long became ever longer, in minutes."""
+"""Bounds of a length, over the adult one. Lengths are learnt from joints that were pulled to
+learnt lengths: without bounds, where one camera gives no depth, a long limb grew further within
+minutes."""
 
 
 def lengths_m(before: Vector | None, joints_m: Vector, stature_m: float) -> Vector:
-    """What is remembered of the lengths of the springs, (10,): both sides have the same.
+    """The remembered lengths of the springs, (10,): both sides have the same.
 
     Args:
-        before: At the instant before; None at the first.
+        before: The lengths at the instant before; None at the first.
         joints_m: (12, 3)
-        stature_m: Of the person.
+        stature_m: The person's stature.
     """
     found = np.linalg.norm(joints_m[ENDS[:, 0]] - joints_m[ENDS[:, 1]], axis=1)
     found[:_LIMBS] = np.repeat(found[:_LIMBS].reshape(-1, 2).mean(axis=1), 2)
@@ -49,10 +50,10 @@ def lengths_m(before: Vector | None, joints_m: Vector, stature_m: float) -> Vect
 
 @compiled
 def sprung(joints_m: Floats, precisions: Floats, lengths: Vector) -> Floats:
-    """The joints (n, 3) that are the likeliest where their distances are known.
+    """The most probable joints (n, 3), given the distances between them.
 
     Args:
-        joints_m: Each where it is likeliest by itself.
+        joints_m: Each at its own most probable place.
         precisions: (n, 6) xx, xy, xz, yy, yz, zz of their inverse covariances, 1 / m^2.
         lengths: (springs,) metres.
     """
@@ -88,7 +89,7 @@ def _pull(
     normal: Floats,
     right: Vector,
 ) -> None:
-    """One spring's share of the normal equations."""
+    """One spring's contribution to the normal equations."""
     x, y, z = (
         joints_m[near, 0] - joints_m[far, 0],
         joints_m[near, 1] - joints_m[far, 1],

@@ -1,7 +1,7 @@
-"""The offset that all joints of a proposal share against the views' rays, and its correction.
+"""The common offset of a proposal's joints from the views' rays, and its correction.
 
 A silhouette with the edge of a curtain, or without one side of the body, moves or turns the whole
-proposal, while the network's confidence stays. Errors of landmarks are not shared by all joints.
+proposal, while the network's confidence stays. Errors of landmarks are not common to all joints.
 """
 
 import math
@@ -19,15 +19,18 @@ USUAL: Final = np.array([0.015, 0.015, 0.015, math.radians(3.0)])
 performers' instants are offset by no more than 1.5 times that and turned by no more than about
 twice that (docs/measurements.md)."""
 SURELY: Final = 1.5
-"""Offset up to which a proposal is left as it is, in units of USUAL; the rest is taken back."""
+"""Offset up to which a proposal is not changed, in units of USUAL; what exceeds it is
+subtracted."""
 EMA_WEIGHT: Final = 0.3
 """Weight of an instant in the running mean of the offsets."""
 OUTLYING: Final = 4.0
-"""Residual at which a landmark counts half, in its standard deviations: it may be an outlier."""
+"""Residual at which a landmark's weight is halved, in its standard deviations: it may be an
+outlier."""
 ROUNDS: Final = 3
 """Rounds of weighted least squares."""
 LOOSELY: Final = np.diag([10.0, 10.0, 10.0, 4.0])
-"""Precision of an offset of zero, 1 / m^2 and 1 / radian^2, for what the rays do not fix."""
+"""Precision of an offset of zero, 1 / m^2 and 1 / radian^2, for what the rays leave
+undetermined."""
 
 
 def step(
@@ -37,15 +40,15 @@ def step(
     rays: Rays,
     stature_m: float,
 ) -> tuple[Vector, NDArray[np.float64]]:
-    """The running mean of the offsets, and the proposal of an instant with it taken back.
+    """The running mean of the offsets, and the proposal of an instant without it.
 
     Args:
         before: (4,) up to the instant before: to the rays by x, y and z in metres, and about the
             vertical in radians; None at the first.
         proposed_m: (12, 3) world, of JOINTS.
-        sure: (V, 12) how probably each landmark is right; 0: there is none.
-        rays: Of the views' landmarks.
-        stature_m: Of the person.
+        sure: (V, 12) probability that each landmark is right; 0: there is none.
+        rays: Rays of the views' landmarks.
+        stature_m: The person's stature.
     """
     moves = _moves(proposed_m)
     now = _displaced(moves, proposed_m, sure, rays, stature_m)
@@ -56,7 +59,8 @@ def step(
 
 
 def _moves(joints_m: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(12, 3, 4) how joints move with x, y and z, and as all turn about the vertical."""
+    """(12, 3, 4) derivatives of the joints with respect to x, y and z, and to a turn about the
+    vertical."""
     moves = np.zeros((len(joints_m), 3, 4))
     moves[:, :, :3] = np.eye(3)
     away_m = joints_m - joints_m.mean(axis=0)
@@ -71,7 +75,8 @@ def _displaced(
     rays: Rays,
     stature_m: float,
 ) -> Vector:
-    """(4,) what brings a proposal nearest to the rays of the views; one alone does not tell it."""
+    """(4,) the offset that brings a proposal nearest to the views' rays; a single view leaves it
+    undetermined."""
     if sure.any(axis=1).sum() < 2:
         return np.zeros(4)
     along = rays.directions

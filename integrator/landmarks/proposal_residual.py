@@ -10,18 +10,18 @@ from common.body.body import Vector
 from integrator.landmarks.landmark_rays import Rays
 
 USUAL: Final = 0.06
-"""Residual of a proposal that is usual, statures: two performers' are hardly ever larger
+"""Usual residual of a proposal, statures: two performers' are hardly ever larger
 (docs/measurements.md)."""
 WIDER: Final = 2.0
-"""Factor on the spread of a proposal whose residual is larger, for each USUAL that it has more."""
+"""Growth of a proposal's spread for each USUAL by which its residual is larger."""
 FARTHEST: Final = 0.25
-"""Residual of a landmark above which it counts no more, statures."""
+"""Residual of a landmark, statures, beyond which its influence stops growing."""
 DOUBTED_FROM: Final = 0.035
 """Residual from which a proposal is doubted, statures: a third have a larger one."""
 ODDS_EXPONENT: Final = 4.0
-"""Power of the ratio of a residual to DOUBTED_FROM by which the proposal's odds fall. Of synthetic
-people before misleading backgrounds, joints of proposals of confidence .7 to .9 with residuals of
-.03, .045, .06, .08 and .1 were near in 76, 55, 47, 29 and 11 % (docs/measurements.md)."""
+"""Exponent of a residual over DOUBTED_FROM by which the proposal's odds fall. Of synthetic
+people before misleading backgrounds, joints of proposals of confidence .7 to .9 with residuals
+of .03, .045, .06, .08 and .1 were near in 76, 55, 47, 29 and 11 % (docs/measurements.md)."""
 TURNED: Final = 50.0
 """Factor by which the odds fall further where the proposal may have front for back: 1 % of those
 were near, 60 % roughly right (docs/measurements.md)."""
@@ -33,9 +33,9 @@ class Misfit(NamedTuple):
     """Running mean squares of the distances from proposed joints to their rays, statures^2."""
 
     whole: float
-    """Of all joints."""
+    """Over all joints."""
     pairs: Vector
-    """(6,) of each pair of left and right: wrists may be wrong while all else is right."""
+    """(6,) for each pair of left and right: wrists may be wrong while all else is right."""
 
 
 def step(
@@ -44,10 +44,10 @@ def step(
     """The residuals up to an instant.
 
     Args:
-        before: Up to the instant before; None at the first.
+        before: The residuals up to the instant before; None at the first.
         proposed_m: (12, 3) world, of JOINTS.
-        rays: Of the views' landmarks.
-        stature_m: Of the person.
+        rays: Rays of the views' landmarks.
+        stature_m: The person's stature.
     """
     pairs = len(proposed_m) // 2
     known = Misfit(0.0, np.zeros(pairs)) if before is None else before
@@ -66,10 +66,10 @@ def step(
 
 
 def wider_m(misfit: Misfit, rays: Rays, stature_m: float) -> Vector:
-    """By how much the spread of each proposed joint grows, (12,) metres.
+    """Growth of each proposed joint's spread, (12,) metres.
 
-    What one outline proposes, and one view alone shows, is doubted pair by pair as well. Of two
-    views it would be the worse for it: 25.0 mm for 23.4 (docs/measurements.md).
+    A proposal from one silhouette alone is doubted pair by pair too. For two views that makes the
+    result worse: 25.0 mm instead of 23.4 (docs/measurements.md).
     """
     squares = np.full_like(misfit.pairs, misfit.whole)
     if rays.confidence.any(axis=1).sum() < 2:
@@ -79,24 +79,25 @@ def wider_m(misfit: Misfit, rays: Rays, stature_m: float) -> Vector:
 
 
 def doubt(misfit: Misfit, turned: bool) -> float:
-    """The factor by which the odds that proposed joints are right are divided.
+    """Divisor of the odds that proposed joints are right.
 
     Args:
-        misfit: Up to this instant.
-        turned: The proposal is flipped.
+        misfit: The residuals up to this instant.
+        turned: Whether the proposal is flipped.
     """
     beyond = max(1.0, math.sqrt(misfit.whole) / DOUBTED_FROM)
     return (TURNED if turned else 1.0) * float(beyond**ODDS_EXPONENT)
 
 
 def _renewed(before: float | Vector, squares: Vector, weights: Vector, joints: int) -> Vector:
-    """A mean that takes a share of what so many joints say now."""
+    """A running mean, updated with the joints of one instant."""
     share = EMA_WEIGHT * np.minimum(1.0, weights / joints)
     return (1.0 - share) * before + share * squares / np.maximum(weights, 1e-9)
 
 
 def _off(away_m: NDArray[np.float64], directions: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(2, 12) metres from joints, (12, 3) of the camera, to their rays and to the other side's."""
+    """(2, 12) distances, metres, from joints (12, 3) in camera axes to their rays and to the
+    other side's."""
     sides = np.stack([directions, directions.reshape(-1, 2, 3)[:, ::-1].reshape(-1, 3)])
     along = (away_m * sides).sum(axis=2, keepdims=True)
     found: NDArray[np.float64] = np.linalg.norm(away_m - along * sides, axis=2)

@@ -1,1 +1,1 @@
-"""Rigs by the person while a run goes on: gathered from its reports, found beside its frames."""
+"""Rigs from the person during a run: gathered from its reports, computed beside its frames."""

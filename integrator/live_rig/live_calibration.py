@@ -1,4 +1,4 @@
-"""The rig of a run that has none, or whose cameras are moved: asked for, and changed to."""
+"""Requests a rig for a run that has none, or whose cameras are moved, and applies it."""
 
 from typing import Final, NamedTuple, Protocol
 
@@ -17,48 +17,49 @@ BELIEVED_BY_NONE: Final = "the rig that is not believable stayed"
 
 
 class Solver(Protocol):
-    """Does one job at a time."""
+    """Solves one job at a time."""
 
     def ask(self, job: Job) -> None:
         """Begin a job."""
 
     def answer(self) -> Solved | None:
-        """What was found, if it is there by now."""
+        """The result, if it is there by now."""
 
     def close(self) -> None:
-        """End what goes on."""
+        """Stop the present job."""
 
 
 class Looking(NamedTuple):
-    """How far the look for a rig is."""
+    """State of the search for a rig."""
 
     search: rig_search.State
     looks: bool
-    """Whether it goes on."""
+    """True while it goes on."""
     late_s: float = 0.0
-    """By how much the times of view 2 are to be set back."""
+    """Time by which the times of view 2 shall be set back."""
     stays: str = "the rig stayed assumed"
-    """What is said where none is found."""
+    """The report where no rig is found."""
     doubted: int = -1
-    """The rig that was doubted last, by its number."""
+    """Number of the rig that was doubted last."""
     now_s: float = 0.0
     lately: seen_lately.State = seen_lately.State()
     news: tuple[str, ...] = ()
-    """What was said."""
+    """The reports so far."""
 
 
 class LiveCalibration:
-    """Hears what the views see, and says when the rig is another."""
+    """Receives the views, and applies a new rig when there is one."""
 
     def __init__(
         self, state: State, *, looks: bool, late_s: float = 0.0, solver: Solver | None = None
     ) -> None:
-        """It does nothing but where it looks for a rig.
+        """It does nothing while no rig is searched for.
 
         Args:
-            state: Of the run.
-            looks: Whether it does from the start; it begins to where the rig becomes wrong.
-            late_s: What is known of view 2 already.
+            state: The integrator's state.
+            looks: Whether it searches from the start; otherwise it begins when the rig becomes
+                wrong.
+            late_s: Known delay of view 2.
             solver: Finds rigs; None: in a child process.
         """
         search = rig_search.init(state.smooth.period_s, state.settings.body.stature_m)
@@ -67,27 +68,27 @@ class LiveCalibration:
 
     @property
     def news(self) -> tuple[str, ...]:
-        """What became of the rig, a line each time."""
+        """What happened to the rig, one line each time."""
         return self.looking.news
 
     @property
     def late_s(self) -> float:
-        """By how much the times of view 2 are to be set back."""
+        """Time by which the times of view 2 shall be set back."""
         return self.looking.late_s
 
     def __enter__(self) -> "LiveCalibration":
-        """Nothing is started before it is needed."""
+        """Nothing starts before it is needed."""
         return self
 
     def __exit__(self, *_: object) -> None:
-        """End what is still looked for."""
+        """End the search."""
         self._solver.close()
         at = self.looking
         if at.looks and at.stays:
             self._tell(f"{at.stays}: {rig_search.why_none(at.search)}")
 
     def heard(self, instant: Instant) -> None:
-        """One instant more."""
+        """Process one instant."""
         lately = seen_lately.step(self.looking.lately, first_two(instant.views))
         at = self.looking = self.looking._replace(now_s=instant.newest.captured_s, lately=lately)
         if not at.looks or at.search.is_over:
@@ -98,7 +99,7 @@ class LiveCalibration:
             self._solver.ask(job)
 
     def changed(self, state: State) -> State:
-        """The state with the rig that was found since, if one was; turned, if a camera was."""
+        """The state with a rig found meanwhile, if any; turned, if a camera was."""
         state = self._after_moves(state)
         self._look_where_doubted(state)
         solved = self._solver.answer()
@@ -114,7 +115,7 @@ class LiveCalibration:
         return state
 
     def _after_moves(self, state: State) -> State:
-        """The state with the cameras that were moved turned as their pictures tell."""
+        """The state with the moved cameras turned as their pictures show."""
         moved = state.stands.moved
         if not moved or state.rig is None or state.settings.trust_calibration:
             return state
@@ -133,7 +134,7 @@ class LiveCalibration:
         return state
 
     def _look_where_doubted(self, state: State) -> None:
-        """Begin to look where both views contradict the rig; once for each rig."""
+        """Begin a search where both views contradict the rig; once for each rig."""
         if self.looking.doubted == state.calibration or not diagnostics.doubt(state):
             return
         at = self.looking = self.looking._replace(doubted=state.calibration)
@@ -147,7 +148,7 @@ class LiveCalibration:
 
 
 def is_by_person(clip: Clip, settings: Settings) -> bool:
-    """Whether the person is to tell the rig of a run, while it goes on."""
+    """Whether a run's rig comes from the person, during the run."""
     method = METHODS[settings.mode]
     shown = method.landmarks and method.proposals and settings.landmarks != "none"
     return clip.rig is None and len(clip.views) == 2 and shown

@@ -1,4 +1,4 @@
-"""From one rig to another while a run goes on: what is remembered, in the world of the new one."""
+"""Change of the rig during a run: the state, converted to the new world."""
 
 import msgspec
 
@@ -14,11 +14,11 @@ from integrator.pose import smoothing
 
 
 def with_rig(state: State, rig: Rig) -> State:
-    """The state as if the person came in now, before a rig that they told.
+    """The state as if the person came in now, with the new rig.
 
-    Where somebody stands, and how, is looked for afresh: the world is another one. Their body is
-    kept: what the opening posture measured, by the new rig, or else the stature that the rig is
-    told by. Where a camera stays at its place the world stays too, and with it all of the body.
+    The person's place and pose are searched anew: the world has changed. Their body is kept: the
+    measurement of the opening posture, recomputed by the new rig, or else the stature that the rig
+    is based on. Where a camera keeps its position the world stays too, and with it all of the body.
     """
     body, opening, source = state.settings.body, state.opening, state.scale_source
     if state.rig is None or not is_same_world(state.rig, rig):
@@ -42,7 +42,7 @@ def with_rig(state: State, rig: Rig) -> State:
 
 
 def is_same_world(before: Rig, rig: Rig) -> bool:
-    """Whether one camera at least stands where it stood: a new world has none there."""
+    """Whether at least one camera keeps its position: otherwise the world is new."""
     return any(
         moved_cameras.stays(one, other)
         for one, other in zip(before.cameras, rig.cameras, strict=True)
@@ -50,7 +50,7 @@ def is_same_world(before: Rig, rig: Rig) -> bool:
 
 
 def set_back(view: View, late_s: float) -> View:
-    """A view with its times set back where it is of camera 2; the room's clock stays as it is."""
+    """The view with its times set back where it is camera 2's; the room's clock stays as it is."""
     if view.viewer != 2 or not late_s:
         return view
     next_s = None if view.next_s is None else view.next_s - late_s
@@ -58,7 +58,7 @@ def set_back(view: View, late_s: float) -> View:
 
 
 def word_of(solved: Solved, late_s: float, moved: tuple[ViewerNumber, ...] = ()) -> str:
-    """What is said of a change, of cameras that were moved or of all."""
+    """The report of a change, of moved cameras or of all."""
     assert solved.trust is not None
     known = f"views {solved.trust.apart_mm:.0f} mm apart"
     if moved:
@@ -73,7 +73,7 @@ def word_of(solved: Solved, late_s: float, moved: tuple[ViewerNumber, ...] = ())
 
 
 def word_of_moved(state: State) -> str:
-    """What is said of cameras that have just been moved."""
+    """The report of cameras that have just been moved."""
     assert state.rig is not None
     stands = state.stands
     by_deg = [

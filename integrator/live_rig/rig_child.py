@@ -1,7 +1,7 @@
-"""The child that finds rigs.
+"""The child process that finds rigs.
 
-Each line is a Job, as base64 of its MessagePack; each answer a Solved with its length before it.
-It gives way to the processes of the run: a third of what they get, where there is not enough.
+Each line is a Job, as base64 of its MessagePack; each answer a Solved, preceded by its length. It
+runs at low priority: it gets a third of the run's processes' time where there is not enough.
 """
 
 import base64

@@ -1,4 +1,4 @@
-"""What the process that finds rigs is asked, and what it answers."""
+"""Requests to the process that finds rigs, and its answers."""
 
 import struct
 from typing import Final
@@ -12,22 +12,22 @@ from common.rig.camera import Rig
 from common.rig.rig_file import CalibrationError
 
 NUMBERS: Final = 1 + 2 * JOINTS + JOINTS + 2
-"""Of a row: time, places, confidence, facing and its confidence."""
+"""Layout of a row: time, places, confidence, facing and its confidence."""
 
 LENGTH: Final = struct.Struct("<I")
-"""What stands before an answer's bytes."""
+"""Header of an answer: its length."""
 
 
 class Stand(msgspec.Struct, frozen=True):
-    """What both views saw before a camera was moved, and the rig that was right then."""
+    """Both views before a camera was moved, and the rig valid then."""
 
     rig: Rig
     tracks: tuple[bytes, bytes]
-    """Packed rows, times as they were told."""
+    """Packed rows, with the reported times."""
 
 
 class Job(msgspec.Struct, frozen=True):
-    """What both views saw, and the rig that is in use."""
+    """Both views, and the rig in use."""
 
     size_px: tuple[int, int]
     stature_m: float
@@ -35,17 +35,17 @@ class Job(msgspec.Struct, frozen=True):
     tracks: tuple[bytes, bytes]
     """Packed rows."""
     rig: Rig | None = None
-    """None: it is assumed."""
+    """None: an assumed rig."""
     moved: tuple[ViewerNumber, ...] = ()
-    """Cameras that were moved: the others stay where the rig has them, and so does the world."""
+    """Moved cameras; the others keep their places in the rig, and so does the world."""
     late_s: float = 0.0
-    """How late view 2 is known to be."""
+    """Delay of view 2, where known."""
     stood: Stand | None = None
-    """Before that."""
+    """Observations from before that."""
 
 
 class Trusted(msgspec.Struct, frozen=True):
-    """How far a rig is believable, by what was seen: see `calibration/gate/rig_trust.py`."""
+    """The rig's assessment by these observations: see `calibration/gate/rig_trust.py`."""
 
     apart_mm: float
     odd: tuple[str, ...]
@@ -57,15 +57,15 @@ class Solved(msgspec.Struct, frozen=True):
     refusal: str = ""
     rig: Rig | None = None
     late_s: float = 0.0
-    """How late view 2 is."""
+    """Delay of view 2."""
     gap_mm: float = 0.0
-    """By how much sight lines of one joint miss each other."""
+    """Median distance between the sight lines of one joint."""
     turn_error_deg: float = 0.0
-    """Of the yaw of camera 2, one sigma."""
+    """Standard deviation of camera 2's yaw."""
     trust: Trusted | None = None
-    """How far the rig is believable, by what it was found from."""
+    """Assessment of the rig by the observations that it was found from."""
     before: Trusted | None = None
-    """The same of the rig that is in use."""
+    """The same for the rig in use."""
 
 
 def packed(row: Row) -> bytes:
@@ -75,7 +75,7 @@ def packed(row: Row) -> bytes:
 
 
 def track_of_bytes(told: bytes) -> JointTrack:
-    """The track of packed rows, one after the other."""
+    """The track of concatenated rows."""
     table = np.frombuffer(told).reshape(-1, NUMBERS)
     joints_px = table[:, 1 : 1 + 2 * JOINTS].reshape(-1, JOINTS, 2)
     return JointTrack(
@@ -106,7 +106,7 @@ def solved(job: Job) -> Solved:
 
 
 def _placed(job: Job, rig: Rig, sighting: Sighting) -> Solved:
-    """The rig with the cameras that were moved where the person has them."""
+    """The rig with the moved cameras placed by the person."""
     from calibration.gate.moved_place import Stood, placed
 
     stood = None

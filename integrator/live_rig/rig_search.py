@@ -1,4 +1,4 @@
-"""When a run asks for a rig by its person, and whether it takes the one that is found."""
+"""When a run requests a rig from its person, and whether it accepts the result."""
 
 import math
 from typing import Final, NamedTuple
@@ -21,74 +21,75 @@ from common.rig.camera import Rig
 from integrator.live_rig.rig_job import Job, Solved, Stand, Trusted, packed
 
 ASKS_S: Final = (4.0, 8.0, 16.0, 32.0)
-"""Seconds of motion seen by both views after which a rig is asked for."""
+"""Seconds of motion in both views after which a rig is requested."""
 MOVED: Final = 0.04
-"""Mean distance that joints must have gone for the person to have moved, heights of the person."""
+"""Mean distance that joints must move for the person to count as moving, heights of the person."""
 STILL_S: Final = 1.0
 """Seconds without motion after which further instants are not gathered."""
 MOST_GAP_MM: Final = 35.0
-"""Mean distance between a believable rig's sight lines of one joint, at most: 15 to 21 for two
-performers (docs/measurements.md)."""
+"""Largest mean distance between a believable rig's sight lines of one joint, millimetres: 15 to
+21 for two performers (docs/measurements.md)."""
 MOST_TURN_DEG: Final = 15.0
-"""Standard deviation of camera 2's yaw, at most: 4 to 10 for two performers
+"""Largest standard deviation of camera 2's yaw, degrees: 4 to 10 for two performers
 (docs/measurements.md)."""
 BETTER: Final = 0.7
-"""Ratio of the views' distance with a new rig to that with the one in use, below which the new one
-may replace it."""
+"""Ratio of the views' distance with a new rig to that with the one in use, below which the new
+one may replace it."""
 BETTER_MM: Final = 5.0
-"""Least gain in the views' distance for that."""
+"""Smallest gain in the views' distance for that, millimetres."""
 MORE: Final = 4.0
-"""Factor of motion from which a rig replaces the one in use whatever it gains: two performers'
-error of 31 and 33 mm after 4 s became 27 after 16 s (docs/measurements.md)."""
+"""Factor of motion from which on a rig replaces the one in use whatever it gains: two
+performers' error of 31 and 33 mm after 4 s became 27 after 16 s (docs/measurements.md)."""
 
 
 class State(NamedTuple):
-    """What was gathered, what was asked, and what is in use."""
+    """Gathered observations, requests, and the rig in use."""
 
     period_s: float
     stature_m: float
     rows: tuple[tuple[bytes, ...], tuple[bytes, ...]] = ((), ())
-    """Of view 1 and view 2, packed, while somebody moves; one of nobody where some are left out."""
+    """Rows of view 1 and view 2, packed, while a person moves; an empty row where some are left
+    out."""
     last_s: tuple[float, float] = (-math.inf, -math.inf)
-    """When the last row of each was taken."""
+    """Time of each view's last row."""
     gap: bool = True
-    """The last rows are of nobody."""
+    """The last rows are empty."""
     size_px: tuple[int, int] = (0, 0)
-    """Of the pictures."""
+    """Size of the pictures."""
     moved_s: float = 0.0
-    """How long somebody has moved."""
+    """How long a person has moved."""
     posed: tuple[float, NDArray[np.float64]] | None = None
-    """When they last had moved, and how they stood then: (15, 2) in view 1, in heights."""
+    """Time of the last motion, and the posture then: (15, 2) in view 1, in heights."""
     asked: int = 0
     waits: bool = False
-    """What was asked is not answered."""
+    """A request is not answered yet."""
     rig: Rig | None = None
-    """Found and taken; None: it is assumed."""
+    """The accepted rig; None: it is assumed."""
     taken: int = 0
-    """Which of what was asked gave it."""
+    """The number of the request that gave it."""
     late_s: float = 0.0
-    """By how much the times of view 2 are set back already."""
+    """Time by which the times of view 2 are set back already."""
     refusal: str = ""
-    """Why the last one was not taken."""
+    """Why the last one was rejected."""
     moved: tuple[ViewerNumber, ...] = ()
-    """Cameras that were moved: they are looked for, the others stand where they stood."""
+    """Moved cameras: they are searched for, the others keep their places."""
     stood: Stand | None = None
-    """What was seen before that."""
+    """Observations from before that."""
     is_stale: bool = False
-    """What is waited for was asked of cameras that stood otherwise."""
+    """The pending request is outdated: cameras were moved since."""
 
     @property
     def is_over(self) -> bool:
-        """Nothing more will be asked."""
+        """There will be no further requests."""
         return self.asked == len(ASKS_S) and not self.waits
 
 
 def init(period_s: float, stature_m: float) -> State:
-    """Nothing was seen.
+    """The state before any observation.
 
     Args:
         period_s: Time between frames.
-        stature_m: What is assumed of the person.
+        stature_m: Assumed stature of the person.
     """
     return State(period_s, stature_m)
 
@@ -99,13 +100,13 @@ def anew(
     moved: tuple[ViewerNumber, ...] = (),
     stood: Stand | None = None,
 ) -> State:
-    """The search begun again: what was seen so far tells nothing of how the cameras stand now.
+    """A new search: earlier observations say nothing about the cameras' present places.
 
     Args:
-        state: Of the search so far.
-        rig: In use; None: it is assumed.
+        state: The search so far.
+        rig: The rig in use; None: it is assumed.
         moved: Cameras that are known to have been moved.
-        stood: What was seen before that.
+        stood: Observations from before that.
     """
     return init(state.period_s, state.stature_m)._replace(
         last_s=state.last_s,
@@ -119,8 +120,7 @@ def anew(
 
 
 def step(state: State, views: TwoViews) -> tuple[State, Job | None]:
-    """One instant more, of whose two reports one at least is there, and what to ask now, if
-    anything."""
+    """Process one instant, with at least one of both reports; return the next request, if any."""
     if state.asked == len(ASKS_S):
         return state, None
     state = _gathered(state, views)
@@ -142,7 +142,7 @@ def step(state: State, views: TwoViews) -> tuple[State, Job | None]:
 
 
 def answered(state: State, solved: Solved) -> tuple[State, bool]:
-    """What was asked is answered: whether that rig is the run's from now on."""
+    """Process an answer: whether its rig is the run's from now on."""
     if state.is_stale:
         return state._replace(waits=False, is_stale=False), False
     state = state._replace(waits=False, refusal=refusal_of(solved))
@@ -153,12 +153,12 @@ def answered(state: State, solved: Solved) -> tuple[State, bool]:
 
 
 def set_back_s(solved: Solved, period_s: float) -> float:
-    """By how much the times of view 2 are to be set back; 0 for less than a share of a frame."""
+    """Time by which the times of view 2 shall be set back; 0 for less than a share of a frame."""
     return solved.late_s if abs(solved.late_s) >= LEAST_LATE * period_s else 0.0
 
 
 def refusal_of(solved: Solved) -> str:
-    """Why a rig is not believed, "" of one that is."""
+    """Why a rig is not believed, "" for a believable one."""
     trust = solved.trust
     if solved.refusal or trust is None:
         return solved.refusal or "too little is seen of anybody"
@@ -171,7 +171,7 @@ def refusal_of(solved: Solved) -> str:
 
 
 def why_none(state: State) -> str:
-    """Why the person told no rig."""
+    """Why the person gave no rig."""
     if state.waits:
         return "what the person tells was not found in time"
     if state.refusal:
@@ -180,11 +180,11 @@ def why_none(state: State) -> str:
 
 
 def is_better(state: State, solved: Solved) -> bool:
-    """Whether a believable rig is clearly better than the one in use, by all that was seen.
+    """Whether a believable rig is clearly better than the one in use, by all observations.
 
-    It is where views agree clearly more by it, or as much where far more motion was seen. A camera
-    that was moved is always placed by the person first: its picture knows its turn alone, and views
-    may agree where it is a step aside.
+    It is better where views agree clearly more by it, or as much where far more motion was seen. A
+    moved camera is always placed by the person first: its picture shows its turn alone, and views
+    may seem to agree where it is a step aside.
     """
     new, old = solved.trust, solved.before
     assert new is not None
@@ -235,7 +235,7 @@ def _pose(person: Observation) -> NDArray[np.float64]:
 
 
 def _left_out(state: State, views: TwoViews) -> State:
-    """The state that knows of a gap: who is not seen is between no neighbours."""
+    """The state with a marked gap: no interpolation goes across it."""
     if state.gap:
         return state
     newest = Instant(views).newest
@@ -247,7 +247,7 @@ def _left_out(state: State, views: TwoViews) -> State:
 
 
 def _with_row(state: State, view: int, row: Row) -> State:
-    """The state with a row more of a view, by its own camera's time, which goes on."""
+    """The state with one more row of a view, by its own camera's increasing time."""
     time_s = row[0] + (state.late_s if view else 0.0)
     if time_s <= state.last_s[view]:
         return state

@@ -1,4 +1,4 @@
-"""A rig asked of a child process: the frames of the run wait for nothing of it."""
+"""Rigs computed by a child process: the run's frames never wait for it."""
 
 import base64
 import contextlib
@@ -15,29 +15,29 @@ from integrator.live_rig.rig_job import LENGTH, Job, Solved, solved
 
 MODULE: Final = f"{__package__}.rig_child"
 STALL_S: Final = 120.0
-"""A child that has found nothing for so long is ended: it needs 3 s of a quiet machine."""
+"""Time after which a child without a result is ended, seconds: it needs 3 s on an idle machine."""
 
 
 class RigSolver:
-    """Does one job at a time, each in a child of its own."""
+    """Solves one job at a time, each in a child of its own."""
 
     def __init__(self) -> None:
-        """Nothing is asked."""
+        """No job yet."""
         self._solved: SimpleQueue[Solved] = SimpleQueue()
         self._child: Child | None = None
 
     def ask(self, job: Job) -> None:
-        """Begin a job; not before the one before it is answered. It is, whatever happens."""
+        """Begin a job, once the one before is answered; every job is, whatever happens."""
         threading.Thread(target=self._do, args=(job,), name="rig", daemon=True).start()
 
     def answer(self) -> Solved | None:
-        """What was found, if it is there by now."""
+        """The result, if it is there by now."""
         with contextlib.suppress(Empty):
             return self._solved.get_nowait()
         return None
 
     def close(self) -> None:
-        """End the child, whatever it does."""
+        """End the child, whatever its state."""
         if self._child is not None:
             self._child.kill()
 
@@ -66,23 +66,24 @@ def _answer(child: Child) -> Solved:
 
 
 class SolverAtOnce:
-    """Does each job while it is asked: for steps that wait for each other."""
+    """Solves each job during the call: for lock-step."""
 
     def __init__(self) -> None:
-        """Nothing is asked."""
+        """No job yet."""
         self._solved: Solved | None = None
 
     def ask(self, job: Job) -> None:
-        """Do a job; what it finds of clocks is told, not set, for frames are paired already."""
+        """Do a job; a delay that it finds is reported, not applied, as frames are paired
+        already."""
         found = solved(job)
         if abs(found.late_s - job.late_s) >= LEAST_LATE * job.period_s:
             found = Solved(refusal=f"view 2 is {1e3 * found.late_s:+.0f} ms late")
         self._solved = found
 
     def answer(self) -> Solved | None:
-        """What was found."""
+        """The result."""
         found, self._solved = self._solved, None
         return found
 
     def close(self) -> None:
-        """Nothing goes on."""
+        """There is nothing to stop."""

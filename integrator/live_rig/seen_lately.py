@@ -1,4 +1,4 @@
-"""What both views saw in the last seconds, kept for the case that a camera is moved."""
+"""Both views' observations of the last seconds, kept in case a camera is moved."""
 
 from typing import Final, NamedTuple
 
@@ -9,24 +9,24 @@ from common.rig.camera import Rig
 from integrator.live_rig.rig_job import Stand, packed
 
 KEPT_S: Final = 8.0
-"""So long is kept what was seen."""
+"""How long observations are kept, seconds."""
 NOTICED_S: Final = 1.0
-"""So long before a move is told the camera may have been moved already."""
+"""How long before a reported move the camera may have been moved already, seconds."""
 
 
 class State(NamedTuple):
-    """The last frames in which both views were sure of somebody."""
+    """The last frames in which both views were sure of a person."""
 
     rows: tuple[tuple[float, bytes, bytes], ...] = ()
-    """When, and what each view saw."""
+    """Time, and each view's observation."""
 
 
 def step(state: State, views: TwoViews) -> State:
-    """One instant more.
+    """Process one instant.
 
     Args:
-        state: What was kept.
-        views: Of the instant.
+        state: The kept observations.
+        views: The views of the instant.
     """
     first, second = views
     if first is None or second is None or not (_shows(first) and _shows(second)):
@@ -39,7 +39,7 @@ def step(state: State, views: TwoViews) -> State:
 
 
 def stand_before(state: State, rig: Rig, now_s: float) -> Stand:
-    """What was seen before a move that is told now, and the rig that was right then."""
+    """The observations before a move that is reported now, and the rig valid then."""
     kept = [row for row in state.rows if row[0] < now_s - NOTICED_S]
     return Stand(rig, (b"".join(row[1] for row in kept), b"".join(row[2] for row in kept)))
 

@@ -6,12 +6,12 @@ from common.body.observation import Facing
 
 
 class Sight(NamedTuple):
-    """What one viewer brings before the arbiter."""
+    """One viewer's input to the arbiter."""
 
     before: Facing
-    """What it was held to see at the frame before."""
+    """Its facing at the frame before."""
     vote: Facing
-    """What it takes itself to see now."""
+    """Its own vote for the present frame."""
     width_px: float
     """W_u-body: the width of the upper body."""
     th_low_px: float
@@ -19,19 +19,20 @@ class Sight(NamedTuple):
 
 
 def arbitrate(first: Sight, second: Sight, scale_ratio: float = 1.0) -> tuple[Facing, Facing]:
-    """What viewers 1 and 2 see, given that one of them sees the facade and the other the flank.
+    """The facings of viewers 1 and 2, given that one of them sees the facade and the other the
+    flank.
 
-    A viewer that changes alone would leave both seeing the same. It is believed, and the other
-    changed as well, when its width lies farther beyond the threshold that it crossed than the
-    other's lies from the threshold that it would have to cross; otherwise it is changed back. At
-    a tie both stay as they were: the print's > in rules 1 and 2 and >= in rules 3 and 4 come to
-    that. When both change at once, or none does, the votes stand.
+    If one viewer alone changed its vote, both would see the same. The change is accepted, and the
+    other's facing changed as well, when its width lies farther beyond the threshold that it crossed
+    than the other's lies from the threshold that it would have to cross; otherwise it is reverted.
+    At a tie both stay as they were: the print's > in rules 1 and 2 and >= in rules 3 and 4 amount
+    to that. When both change at once, or none does, the votes stand.
 
     Args:
         first: Viewer 1; its `before` differs from viewer 2's.
         second: Viewer 2.
-        scale_ratio: What brings viewer 2's pixels to viewer 1's scale. 1.0 compares raw pixels
-            as printed, which a larger picture in one view biases.
+        scale_ratio: Factor from viewer 2's pixels to viewer 1's scale. 1.0 compares raw pixels as
+            printed, which a larger picture in one view biases.
 
     Source: section 4.3, rules (1)-(4) (P48); the start is (facade, flank) (P47).
     """

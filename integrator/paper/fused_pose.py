@@ -1,4 +1,4 @@
-"""The pose of the angles that the viewers found: fused, its doubts settled by both silhouettes."""
+"""The pose from the viewers' angles: fused, with ambiguities resolved by both silhouettes."""
 
 from common.body.body import POSE_INDEX, YAW_DEG, Vector, rest_pose
 from common.body.observation import Facing
@@ -14,16 +14,16 @@ from integrator.rig.body_position import place_of, roots_of, scales_at
 
 
 def step(state: State, rig: Rig, seen: TwoSeen, settled_at: Vector | None) -> Posed:
-    """The facing and the pose of one instant more.
+    """The facing and the pose of one more instant.
 
-    The arbiter settles the facing (P48), position and angles are fused (P50-P54); beyond the
-    paper, the doubts that are left are settled by both silhouettes' votes.
+    The arbiter settles the facing (P48), position and angles are fused (P50-P54); beyond the paper,
+    both silhouettes vote on the remaining ambiguities.
 
     Args:
-        state: What is remembered.
+        state: The integrator's state.
         rig: Two cameras.
-        seen: What each view reports; None where it shows no person.
-        settled_at: Where the body was measured, if that has just been settled.
+        seen: The person in each view; None where it shows none.
+        settled_at: Place at which the body was measured, if just now.
     """
     facing = _faced(state, seen)
     pose = _posed(state, facing, rig, seen, settled_at)
@@ -31,10 +31,10 @@ def step(state: State, rig: Rig, seen: TwoSeen, settled_at: Vector | None) -> Po
 
 
 def _faced(state: State, seen: TwoSeen) -> tuple[Facing, Facing]:
-    """Facade and flank, settled between the views' votes (P48); one view alone decides itself.
+    """Facade and flank, settled between the views' votes (P48); a single view decides alone.
 
-    Beyond the paper: once the body is measured, a view that is alone keeps the last facing, because
-    raised arms narrow the upper body as a turn would and no other view contradicts.
+    Beyond the paper: once the body is measured, a single view keeps the last facing, because raised
+    arms narrow the upper body as a turn would, and no other view can correct that.
     """
     first, second = seen
     if first is None or second is None:
@@ -76,7 +76,8 @@ def _posed(
 
 
 def _settled(state: State, rig: Rig, seen: TwoSeen, pose: Vector) -> Vector:
-    """What one view alone cannot tell, by both silhouettes: a departure from the paper (L2, L3)."""
+    """Ambiguities of single views, resolved by both silhouettes: a departure from the paper (L2,
+    L3)."""
     first, second = seen
     if first is None or second is None:
         return pose

@@ -1,4 +1,4 @@
-"""Two views' angles, one body's: who is believed about what (section 4.4)."""
+"""Fusion of two views' angles into one body's: which view determines which angle (section 4.4)."""
 
 from typing import Final
 
@@ -7,7 +7,8 @@ from common.body.observation import Observation
 from common.method import Method
 
 LIFT_WITHIN_DEG: Final = 5.0
-"""A leg whose theta_Z is this near to 180 is seen from its flank: it may be lifted (P53, M16)."""
+"""Distance of a hip's theta_Z from 180 up to which the leg is seen from its flank, degrees: it
+may be lifted (P53, M16)."""
 
 ARM_FROM_FACADE: Final = (
     "r_shoulder_y",
@@ -23,9 +24,9 @@ ARM_FROM_FLANK: Final = ("r_shoulder_x", "l_shoulder_x")
 def lifted(side: str, hip_z_deg: float, squats: bool) -> bool:
     """Whether a leg is lifted, by the facade's theta_Z of its hip (P53, M16).
 
-    Printed is 175 < theta_Z < 180 for the right leg, which the left mirrors. 180 itself is the
-    resting value and on the search's grid, so M16 reads |theta_Z - 180| <= 5; what it adds to the
-    print is a lifted leg only where the knees are not bent in a squat.
+    Printed is 175 < theta_Z < 180 for the right leg, mirrored for the left. 180 itself is the
+    resting value and on the search's grid, so M16 reads |theta_Z - 180| <= 5; beyond the print, a
+    leg counts as lifted only where the knees are not bent in a squat.
     """
     inwards_deg = wrapped_deg(hip_z_deg - 180.0) * (-1.0 if side == "r" else 1.0)
     if squats:
@@ -38,16 +39,15 @@ def fused(
 ) -> Vector:
     """The universal pose from both views' angles.
 
-    Arms: theta_X of the shoulders from the flank, the rest from the facade (P51). Legs: theta_Z
-    of the hips from the facade; theta_X of hips and knees from the flank where the leg is lifted,
-    else from the facade, which has 0 unless it squats (P52, P53). What no view tells stays as it
-    was.
+    Arms: theta_X of the shoulders from the flank, the rest from the facade (P51). Legs: theta_Z of
+    the hips from the facade; theta_X of hips and knees from the flank where the leg is lifted, else
+    from the facade, which has 0 unless it squats (P52, P53). Other angles stay as they were.
 
     Args:
-        before: Pose of the frame before, (25,); its position and trunk are not touched.
-        facade: Of the view that sees the facade, if it has a body.
-        flank: Of the view that sees the flank, if it has a body.
-        method: Whether who squats lifts no leg.
+        before: Pose of the frame before, (25,); its position and trunk are not changed.
+        facade: Result of the view that sees the facade, if it has a body.
+        flank: Result of the view that sees the flank, if it has a body.
+        method: Whether a person who squats lifts no leg.
     """
     pose = before.copy()
     if flank is not None:
@@ -72,7 +72,7 @@ def fused(
 
 
 def _with_angles(pose: Vector, person: Observation, names: tuple[str, ...]) -> Vector:
-    """The pose with those of the named angles that a view tells."""
+    """The pose with the named angles that a view determines."""
     found, angles_deg = pose.copy(), {} if person.search is None else person.search.angles_deg
     for name in names:
         if name in angles_deg:

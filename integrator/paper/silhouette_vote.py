@@ -1,4 +1,4 @@
-"""Which of several poses both silhouettes speak for: what one view alone cannot tell."""
+"""Votes of both silhouettes between several poses, where one view alone is ambiguous."""
 
 import math
 from collections.abc import Callable, Iterable
@@ -15,25 +15,26 @@ from common.method import Method
 from integrator.fit.silhouette_pair import Silhouettes, products
 
 Doubt = Callable[[Vector, Vector], NDArray[np.float64]]
-"""From the pose so far and that of the frame before: it, and others that may be meant, (n, 25)."""
+"""From the present pose and that of the frame before: the present one and its alternatives, (n,
+25)."""
 
 
 class Vote(NamedTuple):
-    """A doubt, and how many times better S1 S2 must be for another pose than the one so far."""
+    """An ambiguity, and the ratio of S1 S2 by which an alternative must exceed the present pose."""
 
     doubt: Doubt
     surely: float
 
 
 SURELY: Final = 1.01
-"""How many times better S1 S2 must be for a pose to be preferred to the one before it."""
+"""Ratio of S1 S2 by which a pose must exceed the one before it to be preferred."""
 SQUATS: Final = 1.04
 """The same for a squat with a bowed trunk, which changes more at once."""
 BENDS_DEG: Final = range(0, 71, 10)
 BOWS_DEG: Final = range(0, 41, 10)
-"""theta_X of the hips of a squat, and of the trunk."""
+"""theta_X of the hips in a squat, and of the trunk."""
 STEPS_M: Final = (-0.03, -0.012, 0.012, 0.03)
-"""How far the body may be from where its columns and rows have it: a pixel is 22 mm."""
+"""Displacements of the body from the place of its columns and rows, metres: a pixel is 22 mm."""
 
 TURNS: Final = (
     (("r_hip_x", 10.0), ("r_knee_x", 16.0)),
@@ -44,10 +45,10 @@ TURNS: Final = (
     (("torso_x", 6.0), ("z", 0.02)),
     (("x", 0.02), ("y", 0.02)),
 )
-"""What is turned or moved together, and by how much (degrees, metres) a step."""
+"""Parameters that are turned or moved together, and their step (degrees, metres)."""
 TURN_STEPS: Final = (-2, -1, 0, 1, 2)
 TURN_SHARES: Final = (1.0, 0.5)
-"""Of the steps, in the first and the second round."""
+"""Factors on the steps, in the first and the second round."""
 
 HIPS: Final = [POSE_INDEX["r_hip_x"], POSE_INDEX["l_hip_x"]]
 KNEES: Final = [POSE_INDEX["r_knee_x"], POSE_INDEX["l_knee_x"]]
@@ -74,15 +75,15 @@ def moving(poses: NDArray[np.float64]) -> int:
 
 
 def votes_of(method: Method, upright_m: float, leg_m: float, fitted: bool) -> list[Vote]:
-    """What both silhouettes vote on, in turn, each a few poses.
+    """The votes of both silhouettes, in order, each between a few poses.
 
-    Whether the person squats; where the body is; which arm it is that swings, or whether both do
+    They concern: whether the person squats; where the body is; which arm swings, or whether both do
     (L3); whether an arm was lost, and is where it was or hangs. A body that was fitted to its
-    silhouette is then turned joint by joint too; one that was measured in the opening posture is
+    silhouette is then turned joint by joint too. One that was measured in the opening posture is
     not: its cylinders have no feet, and would bend to cover them.
 
     Args:
-        method: Which of them.
+        method: Selects the votes.
         upright_m: Height of the navel of the person standing upright.
         leg_m: Length of a leg.
         fitted: The body is a prior that was fitted to the silhouette.
@@ -106,16 +107,16 @@ def votes_of(method: Method, upright_m: float, leg_m: float, fitted: bool) -> li
 def settled(
     pose: Vector, before: Vector, body: Vector, silhouettes: Silhouettes, votes: Iterable[Vote]
 ) -> Vector:
-    """The fused pose with its doubts settled by both silhouettes.
+    """The fused pose, with its ambiguities resolved by both silhouettes.
 
-    Of each vote the pose with the highest S1 S2 is taken, and the first, which is the pose so far,
-    unless another is surely better.
+    Each vote takes the pose with the highest S1 S2; the first one, which is the present pose, stays
+    unless another is clearly better.
 
     Args:
-        pose: As the two views' angles were fused, (25,).
-        before: Of the frame before.
+        pose: The fusion of the two views' angles, (25,).
+        before: Pose of the frame before.
         body: Body vector.
-        silhouettes: Of both views, in pictures of one size.
+        silhouettes: Both views' silhouettes, in pictures of one size.
         votes: In their order.
     """
     for doubt, surely in votes:
@@ -129,8 +130,8 @@ def settled(
 def squatted(upright_m: float, leg_m: float, pose: Vector, _before: Vector) -> NDArray[np.float64]:
     """The pose, and the same in squats of all depths, the trunk bowed or not, (n, 25).
 
-    The feet stay on the floor, under the hips (P34), so the navel sinks as the knees bend. The
-    shift of a model with straight legs cannot find that: its legs stand on the floor as well.
+    The feet stay on the floor, under the hips (P34), so the navel sinks as the knees bend. Shifting
+    a model with straight legs cannot find that: its legs stand on the floor as well.
     """
     squats = list(product(BENDS_DEG, BOWS_DEG))
     poses = np.tile(pose, (1 + len(squats), 1))
@@ -143,7 +144,7 @@ def squatted(upright_m: float, leg_m: float, pose: Vector, _before: Vector) -> N
 
 
 def shifted(pose: Vector, _before: Vector) -> NDArray[np.float64]:
-    """The pose and its like some millimetres to every side, (n, 25)."""
+    """The pose, and the same displaced to every side, (n, 25)."""
     moved = [(axis, step) for axis in range(3) for step in STEPS_M]
     poses = np.tile(pose, (1 + len(moved), 1))
     for row, (axis, step) in enumerate(moved, 1):
@@ -152,7 +153,7 @@ def shifted(pose: Vector, _before: Vector) -> NDArray[np.float64]:
 
 
 def swung(pose: Vector, before: Vector) -> NDArray[np.float64]:
-    """The pose, and each way in which the swings that were found can belong to the arms, (n, 25).
+    """The pose, and each assignment of the found swings to the arms, (n, 25).
 
     The flank view shows both arms as one silhouette; the facade shows which of them left the
     trunk's side.

@@ -1,4 +1,4 @@
-"""From twelve joints to the angles of the ten cylinders: the way back through the kinematics."""
+"""Inverse kinematics: from twelve joints to the angles of the ten cylinders."""
 
 import math
 from typing import Final
@@ -32,12 +32,12 @@ PLACES: Final = {
     for i, name in enumerate(("shoulder", "elbow", "wrist", "hip", "knee", "ankle"))
     for side in "lr"
 }
-"""Where each joint stands among the twelve."""
+"""Index of each joint among the twelve."""
 
 STRAIGHT_DEG: Final = 12.0
-"""An arm that is bent less does not tell how it is twisted."""
+"""Bend of an arm, degrees, below which its twist is undetermined."""
 ASTRAY: Final = 3.0
-"""How much worse a degree beyond a joint's limits is than a degree from the pose before."""
+"""Cost of a degree beyond a joint's limits, over that of a degree from the pose before."""
 
 LOW_DEG: Final = np.array([LIMITS_DEG.get(name, (-np.inf, np.inf))[0] for name in POSE_NAMES])
 HIGH_DEG: Final = np.array([LIMITS_DEG.get(name, (-np.inf, np.inf))[1] for name in POSE_NAMES])
@@ -46,12 +46,13 @@ HIGH_DEG: Final = np.array([LIMITS_DEG.get(name, (-np.inf, np.inf))[1] for name 
 
 @compiled
 def pose_of(joints_m: Floats, body: Vector, before: Vector) -> Floats:
-    """The pose, (25,), that puts a body's landmarks where joints are, but for their lengths.
+    """The pose, (25,), whose landmarks point from joint to joint as the given ones; lengths are the
+    body's.
 
     Args:
         joints_m: (12, 3) world, in the order of PLACES.
         body: Body vector.
-        before: Pose of the frame before: of two ways to the same place, the nearer one is taken.
+        before: Pose of the frame before: of two solutions, the nearer one is taken.
     """
     pose = before.copy()
     trunk = trunk_of(joints_m)
@@ -98,14 +99,14 @@ def trunk_of(joints_m: Floats) -> Floats:
 def _set_limb(
     pose: Vector, start: Vector, middle: Vector, end: Vector, length: float, at: int, at_bend: int
 ) -> None:
-    """Shoulder and elbow, or hip and knee, from joints in the trunk's axes.
+    """Angles of shoulder and elbow, or hip and knee, from joints in the trunk's axes.
 
     Args:
-        pose: Its angles of this limb are set.
-        start: (3,) and where the limb bends and where it ends.
-        length: Of its upper part in the body that is posed.
-        at: Where its angles begin.
-        at_bend: Where its bend stands: about the twisted axis of the upper part.
+        pose: Its angles of this limb are written.
+        start: (3,) its root; then the joint where it bends and its end.
+        length: Length of its upper part in the posed body.
+        at: Index at which its angles begin.
+        at_bend: Index of its bend, about the twisted axis of the upper part.
     """
     upper = _unit(middle - start)
     pose[at], pose[at + 2] = _aim(upper, at, pose)
@@ -114,12 +115,13 @@ def _set_limb(
 
 @compiled
 def bend(pose: Vector, at: int, at_bend: int, lower: Vector) -> None:
-    """Set the twist of an upper limb and the bend of the lower one, so that this points as told.
+    """Set the twist of an upper limb and the bend of the lower one, so that the latter has a given
+    direction.
 
     Args:
         pose: theta_X and theta_Z of the upper limb, pose[at] and pose[at + 2], are set.
-        at: Where its angles begin.
-        at_bend: Where the bend stands: knees bend backwards, elbows forwards.
+        at: Index at which its angles begin.
+        at_bend: Index of the bend: knees bend backwards, elbows forwards.
         lower: Unit vector in the trunk's axes.
     """
     across, along, front = _framed(lower, pose[at], pose[at + 2])
@@ -134,7 +136,7 @@ def bend(pose: Vector, at: int, at_bend: int, lower: Vector) -> None:
 
 @compiled
 def turn_deg(lower: Vector, pose: Vector, at: int) -> float:
-    """How far a lower limb is turned against its upper one, about that one's twisted axis."""
+    """Twist of a lower limb relative to its upper one, about that one's twisted axis."""
     across, along, front = _framed(lower, pose[at], pose[at + 2])
     twist = math.radians(pose[at + 1])
     return math.degrees(math.atan2(across * math.sin(twist) + front * math.cos(twist), along))
@@ -153,13 +155,14 @@ def _cross(a: Vector, b: Vector) -> Floats:
 
 @compiled
 def cosine(value: float) -> float:
-    """The value, were it not for rounding."""
+    """The value without rounding errors."""
     return min(max(value, -1.0), 1.0)
 
 
 @compiled
 def _aim(axis: Vector, at: int, before: Vector) -> tuple[float, float]:
-    """theta_X and theta_Z, degrees, that lead a limb along an axis: of two ways the likelier."""
+    """theta_X and theta_Z, degrees, that align a limb with an axis: of two solutions the
+    likelier."""
     x = math.degrees(math.asin(cosine(axis[2])))
     z = math.degrees(math.atan2(-axis[0], axis[1]))
     one, other = (x, z % 360.0), ((180.0 - x + 180.0) % 360.0 - 180.0, (z + 180.0) % 360.0)
@@ -172,7 +175,7 @@ def _aim(axis: Vector, at: int, before: Vector) -> tuple[float, float]:
 
 @compiled
 def _cost(at: int, turn_deg: float, before: Vector) -> float:
-    """How far a parameter would turn, and how far beyond its limits."""
+    """Cost of a turn of a parameter, and of its excess over the limits."""
     low, high = LOW_DEG[at], HIGH_DEG[at]
     total = abs(apart(turn_deg, before[at]))
     if not low <= turn_deg <= high:
@@ -182,13 +185,13 @@ def _cost(at: int, turn_deg: float, before: Vector) -> float:
 
 @compiled
 def apart(one_deg: float, other_deg: float) -> float:
-    """How far an angle is beyond another, in [-180, 180)."""
+    """Difference of two angles, in [-180, 180)."""
     return (one_deg - other_deg + 180.0) % 360.0 - 180.0
 
 
 @compiled
 def _framed(arrow: Vector, x_deg: float, z_deg: float) -> tuple[float, float, float]:
-    """An arrow of the trunk's axes in those of a limb turned by R_z R_x."""
+    """A vector in the trunk's axes, in the axes of a limb turned by R_z R_x."""
     a, b = math.radians(z_deg), math.radians(x_deg)
     across = math.cos(a) * arrow[0] + math.sin(a) * arrow[1]
     along = math.cos(a) * arrow[1] - math.sin(a) * arrow[0]

@@ -1,4 +1,4 @@
-"""Poses within the limits of joints: limbs turned as little as that takes (P30, P35)."""
+"""Poses within the limits of joints, with limbs turned as little as necessary (P30, P35)."""
 
 import math
 from typing import Final
@@ -22,21 +22,22 @@ from common.compiled import compiled
 from integrator.pose.inverse_kinematics import HIGH_DEG, LOW_DEG, apart, bend, cosine, turn_deg
 
 TWIST_DEG: Final = 60.0
-"""How far a thigh turns about its own axis to either side of where its knee points to the front: a
-knee that bends to the front would take a half turn (T22: knees bend backwards)."""
+"""Largest turn of a thigh about its own axis, degrees, to either side of the knee pointing
+forwards: a knee that bends forwards would take a half turn (T22: knees bend backwards)."""
 
 OFF: Final = 20.0
-"""How much worse a degree off a limb's direction is than a degree from the pose before: 13 to 18
-degrees are given up before an arm is written as raised over the head to the same place."""
+"""Cost of a degree off a limb's direction, over that of a degree from the pose before: the
+direction is changed by up to 13 to 18 degrees before an arm is represented as raised over the
+head to the same place."""
 
 _LOWS, _HIGHS = LOW_DEG[list(ANGLES_IN_POSE)], HIGH_DEG[list(ANGLES_IN_POSE)]
 _MIDDLES: Final = np.array([sum(LIMITS_DEG.get(name, (0.0, 0.0))) / 2 for name in ANGLE_NAMES])
 
 
 def clipped(angles_deg: Vector) -> Vector:
-    """The 17 angles, each in the turn of its limits and no further than they go.
+    """The 17 angles, wrapped into the turn of their limits and clipped to them.
 
-    Smooth angles overshoot, where a knee was straight say, and pass through turns.
+    Smoothed angles overshoot, for example at a straight knee, and pass through whole turns.
     """
     turned = angles_deg - 360.0 * np.round((angles_deg - _MIDDLES) / 360.0)
     found: Vector = np.clip(turned, _LOWS, _HIGHS)
@@ -46,11 +47,11 @@ def clipped(angles_deg: Vector) -> Vector:
 def within(
     body: Vector, pose: Vector, before: Vector, joints_m: NDArray[np.float64]
 ) -> tuple[Vector, NDArray[np.float64]]:
-    """A pose held within the limits, and joints moved as far as its limbs are turned by that.
+    """A pose held within the limits, and joints moved by the same turns of the limbs.
 
     Args:
         body: Body vector.
-        pose: That of the joints.
+        pose: The pose of the joints.
         before: Pose of the frame before.
         joints_m: (15, 3) world.
     """
@@ -62,14 +63,14 @@ def within(
 
 @compiled
 def held(pose: Vector, before: Vector) -> Floats:
-    """The pose with every limb where its joints let it be, (25,).
+    """The pose with every limb within the limits of its joints, (25,).
 
-    A direction has two pairs of theta_X and theta_Z. Of both, as near as they come to it within
-    the limits, the likelier one is taken: an arm that seems to hang a little inwards hangs
-    straight, and is not raised over the head to come down on that side.
+    A direction has two pairs of theta_X and theta_Z. Each is brought as near to it as the limits
+    allow, and the likelier one is taken: an arm that seems to hang a little inwards hangs straight,
+    and is not raised over the head to come down on that side.
 
     Args:
-        pose: As `pose_of` gives it.
+        pose: From `pose_of`.
         before: Pose of the frame before.
     """
     found = pose.copy()
@@ -81,7 +82,7 @@ def held(pose: Vector, before: Vector) -> Floats:
 
 @compiled
 def _hold(pose: Vector, before: Vector, at: int, at_bend: int) -> None:
-    """Hold one limb, whose lower half keeps its direction where it can."""
+    """Hold one limb within its limits; the lower half keeps its direction where possible."""
     x, y, z = pose[at], pose[at + 1], pose[at + 2]
     lower = _along(x, y, z, pose[at_bend])
     if not (_is_within(x, at) and _is_within(z, at + 2)):
@@ -94,7 +95,7 @@ def _hold(pose: Vector, before: Vector, at: int, at_bend: int) -> None:
 
 @compiled
 def _untwist(pose: Vector, at: int, at_bend: int, lower: Vector) -> None:
-    """Turn a knee back that points too far aside."""
+    """Turn back a knee that points too far aside."""
     x, z = math.radians(pose[at]), math.radians(pose[at + 2])
     ahead_deg = math.degrees(math.atan2(math.sin(x) * math.sin(z), -math.cos(z)))
     twist_deg = apart(pose[at + 1], ahead_deg)
@@ -105,7 +106,7 @@ def _untwist(pose: Vector, at: int, at_bend: int, lower: Vector) -> None:
 
 @compiled
 def _nearest(axis: Vector, at: int, before: Vector) -> tuple[float, float]:
-    """theta_X and theta_Z within their limits that lead a limb along an axis, or near it."""
+    """theta_X and theta_Z within their limits that align a limb with an axis, or nearly."""
     straight_deg = math.degrees(math.atan2(-axis[0], axis[1]))
     best, x, z = math.inf, 0.0, 0.0
     for half in (0.0, 180.0):
@@ -139,7 +140,7 @@ def _into(angle_deg: float, at: int) -> float:
 
 @compiled
 def _along(x_deg: float, y_deg: float, z_deg: float, bend_deg: float) -> Floats:
-    """Where a lower limb points, in the trunk's axes: R_z R_x R_y R_x(bend) of the upward axis."""
+    """Direction of a lower limb in the trunk's axes: R_z R_x R_y R_x(bend) of the upward axis."""
     x, y, z, b = (
         math.radians(x_deg), math.radians(y_deg), math.radians(z_deg), math.radians(bend_deg)
     )  # fmt: skip

@@ -1,4 +1,4 @@
-"""Calm angles: a constant-velocity Kalman filter over all of them, the seam at 180 included."""
+"""Smoothed angles: a constant-velocity Kalman filter over all of them, across the seam at 180."""
 
 from functools import lru_cache
 from typing import Final, NamedTuple
@@ -11,10 +11,10 @@ from common.body.body import Vector
 
 
 class Smoothing(NamedTuple):
-    """How much is believed of what is measured.
+    """Noise parameters of the filter.
 
-    With 3 to 6 degrees of white noise on the true angles of two performers this errs least, or
-    within 6 % of it, at the pace that was filmed and at twice that pace.
+    With 3 to 6 degrees of white noise on the true angles of two performers these have the least
+    error, or are within 6 % of it, at the recorded pace and at twice that pace.
     """
 
     noise_deg: float = 6.0
@@ -28,43 +28,42 @@ START_SPEED_DEG_S: Final = 200.0
 
 
 class State(NamedTuple):
-    """A value: stepping it leaves it as it was."""
+    """The filter's state; a step returns a new one."""
 
     settings: Smoothing
     period_s: float
     x: Vector
     """(2 n,) the angles, degrees, and then their speeds, degrees a second."""
     P: Vector | None
-    """(2 n, 2 n) their covariance; None until something was measured."""
+    """(2 n, 2 n) their covariance; None until the first measurement."""
 
 
 def init(n: int, period_s: float, settings: Smoothing = Smoothing()) -> State:
-    """A filter for n angles that has measured nothing.
+    """A filter for n angles before any measurement.
 
     Args:
-        n: How many angles.
-        period_s: Time between frames; what a step of no given time takes.
-        settings: How much is believed.
+        n: Number of angles.
+        period_s: Time between frames; the default of a step's time.
+        settings: Noise parameters.
     """
     return State(settings, period_s, np.zeros(2 * n), None)
 
 
 def step(state: State, angles_deg: Vector | None, dt_s: float) -> tuple[State, Vector, Vector]:
-    """One instant: predicted at constant speed, then drawn to what was measured.
+    """One instant: prediction at constant speed, then correction by the measurement.
 
-    The prediction is brought to the measurement's turn first, so that 179 and -179 are two
-    degrees apart. What comes out is in that turn too: near the measurement, and beyond +-180
-    rather than a whole turn away from it.
+    The prediction is first brought to the measurement's turn, so that 179 and -179 are two degrees
+    apart. The result is in that turn too: near the measurement, and beyond +-180 rather than a
+    whole turn away from it.
 
     Args:
-        state: What is remembered.
-        angles_deg: Measured angles (n,); None where there is no measurement: the prediction is
-            the answer then.
+        state: The filter's state.
+        angles_deg: Measured angles (n,); None without a measurement: the result is the prediction.
         dt_s: Time since the step before.
 
     Returns:
-        The state, the smooth angles (n,) and their speeds (n,), degrees a second; NaN as long as
-        nothing was measured.
+        The state, the smoothed angles (n,) and their speeds (n,), degrees a second; NaN before
+        the first measurement.
     """
     if state.P is None:
         if angles_deg is None:
@@ -95,8 +94,8 @@ def _stepped(state: State, before: Vector, angles_deg: Vector | None, dt_s: floa
 
 @lru_cache(maxsize=16)
 def _motion(n: int, dt_s: float, settings: Smoothing) -> tuple[Vector, Vector]:
-    """What constant speed makes of the state, and the covariance that an unknown acceleration, the
-    same all through a step, adds: (2 n, 2 n) each."""
+    """The prediction at constant speed, and the covariance added by an unknown acceleration that
+    is constant during a step: (2 n, 2 n) each."""
     moved, same = np.array([[1.0, dt_s], [0.0, 1.0]]), np.eye(n)
     noise = Q_discrete_white_noise(2, dt_s, settings.acceleration_deg_s2**2)
     return np.kron(moved, same), np.kron(noise, same)

@@ -1,1 +1,1 @@
-"""The joints that a recurrent network proposes from the silhouettes."""
+"""Joints proposed by recurrent networks, from silhouettes and from landmarks."""

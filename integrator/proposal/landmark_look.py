@@ -1,4 +1,4 @@
-"""What the landmarks of each view show of somebody, told as from where they stand."""
+"""Network input from the landmarks of each view, relative to the cameras' places."""
 
 from typing import Final, NamedTuple
 
@@ -21,59 +21,59 @@ from integrator.rig.body_position import triangulate
 
 JOINTS: Final = len(JOINT_NAMES)
 FACED, STANDS, KNOWN = 3 * JOINTS, 3 * JOINTS + 3, 3 * JOINTS + 8
-"""Of what is said of a view, behind joints and confidences: where which way the body faces begins,
-where the camera stands, and the end."""
+"""Layout of one view's input after joints and confidences: start of the facing, start of the
+camera's place, end."""
 INPUTS: Final = 2 * KNOWN + 2
-"""Both views, how long it has been since the look before, and whether both see."""
+"""Number of further inputs: both views, the time since the input before, and whether both see."""
 MIDDLE: Final = [JOINT_NAMES.index(name) for name in ("l_shoulder", "r_shoulder", "l_hip", "r_hip")]
 ANKLES: Final = [JOINT_NAMES.index(name) for name in ("l_ankle", "r_ankle")]
 PELVIS, NECK = JOINT_NAMES.index("pelvis"), JOINT_NAMES.index("neck")
 UP: Final = np.array([0.0, 1.0, 0.0])
 
 ANKLE_UP: Final = 0.045
-"""How high an ankle is over the floor, in statures."""
+"""Height of an ankle above the floor, statures."""
 SURE: Final = 0.3
-"""Confidence in the lower ankle from which on it tells how far away somebody stands."""
+"""Confidence in the lower ankle from which on it determines the person's distance."""
 SPREAD: Final = 0.33
-"""How far joints are from their middle, in statures, of whose distance nothing else tells."""
+"""Distance of joints from their middle, statures, used where nothing else determines the
+distance."""
 LEAST_SPREAD: Final = 1e-3
 STEEPEST: Final = 1e-3
-"""Cosine of the angle between a ray and the floor of what is seen from above or below."""
+"""Cosine of the angle between a ray and the floor for a person seen from above or below."""
 ASLANT: Final = 0.05
-"""Cosine of the angle to the sight line of what is beside the body's middle, at least."""
+"""Smallest cosine of the angle to the line of sight of a joint beside the body's middle."""
 BEYOND: Final = 1.2
-"""No joint is shown farther from the middle, in statures."""
+"""Largest distance of a joint from the middle, statures."""
 LEANS: Final = 3.0**0.5
-"""Which way who leans by more than 30 degrees in a picture faces is said about the trunk, and not
-heard here."""
+"""Lean in a picture, degrees, beyond which a facing refers to the trunk and is not used here."""
 
 
 class Shown(NamedTuple):
-    """What one view's landmarks say."""
+    """One view's landmarks."""
 
     joints_px: NDArray[np.float64]
     """(15, 2) undistorted."""
     confidence: Vector
-    """(15,)"""
+    """(15,) confidence."""
     facing_deg: float
     facing_confidence: float
 
 
 class Look(NamedTuple):
-    """What the network that lifts landmarks is told, and where that is."""
+    """The input of the lifting network, and its frame."""
 
     inputs: Floats
     """(INPUTS,)"""
     middle_m: Vector
-    """(3,) of the body, world."""
+    """(3,) place of the body, world."""
     turn: Vector
-    """(3, 3) rows: the axes of the network's frame in the world; left-handed in a mirror."""
+    """(3, 3) rows: the axes of the network's frame in the world; left-handed where mirrored."""
     mirrored: bool
-    """It is told what is in a mirror: right limbs are left ones there."""
+    """True: the input is mirrored, so right limbs are left ones."""
 
 
 def shown_of(person: Observation | None) -> Shown | None:
-    """What a person's landmarks say; None where there are none."""
+    """A person's landmarks; None where there are none."""
     found = None if person is None else person.landmarks
     if found is None:
         return None
@@ -84,13 +84,13 @@ def shown_of(person: Observation | None) -> Shown | None:
 def look(
     shown: tuple[Shown | None, Shown | None], rig: Rig, stature_m: float, since_s: float
 ) -> Look | None:
-    """The landmarks as the network wants them; None where they show nobody, or no one body.
+    """The landmarks as network input; None where they show no person, or not one body.
 
     Args:
-        shown: Of the views, one of them at least.
+        shown: The views, at least one present.
         rig: The cameras without distortion; their world has y up and its floor at 0.
-        stature_m: Of the person.
-        since_s: Time since the look before.
+        stature_m: The person's stature.
+        since_s: Time since the input before.
     """
     first, second = shown
     lone = rig.cameras[0] if second is None else rig.cameras[1]
@@ -120,7 +120,7 @@ def look(
 
 
 def _tell_joints(own: Floats, statures: NDArray[np.float64], seen: Shown, mirrored: bool) -> None:
-    """Where joints are, (15, 2) from the middle, how surely, and which way the body faces."""
+    """Places of the joints, (15, 2) from the middle, their confidence, and the facing."""
     trunk = statures[NECK] - statures[PELVIS]
     heard = seen.facing_confidence if trunk[1] > LEANS * abs(trunk[0]) else 0.0
     confidence, facing = seen.confidence, np.radians(seen.facing_deg)
@@ -133,8 +133,8 @@ def _tell_joints(own: Floats, statures: NDArray[np.float64], seen: Shown, mirror
 
 
 def _on_plane(seen: NDArray[np.float64], forward: Vector) -> NDArray[np.float64] | None:
-    """Where rays (n, 3) cross the plane at depth 1 before who looks along `forward`, upright:
-    (n, 2) to the right and up; None of who looks straight up or down."""
+    """Intersections of rays (n, 3) with the plane at depth 1 of an upright camera that looks
+    along `forward`: (n, 2) to the right and up; None where it looks straight up or down."""
     back = -forward * [1.0, 0.0, 1.0]
     flat = float(np.linalg.norm(back))
     if flat < STEEPEST:
@@ -145,7 +145,7 @@ def _on_plane(seen: NDArray[np.float64], forward: Vector) -> NDArray[np.float64]
 
 
 def _where_both_see(first: Shown, second: Shown, rig: Rig) -> Vector | None:
-    """Where the middles of both views' landmarks meet, before both cameras."""
+    """Intersection of the rays to both views' middles, in front of both cameras."""
     cameras = rig.cameras[0], rig.cameras[1]
     left, right = (tuple(one.joints_px[MIDDLE].mean(axis=0).tolist()) for one in (first, second))
     found_m: Vector = triangulate(cameras, (left, right))
@@ -156,8 +156,8 @@ def _where_both_see(first: Shown, second: Shown, rig: Rig) -> Vector | None:
 def _where_it_stands(
     shown: Shown | None, camera: Camera, stature_m: float
 ) -> tuple[Vector | None, bool]:
-    """Where the middle of one view's landmarks is, and whether an ankle on the floor tells it:
-    otherwise their size does."""
+    """The middle of one view's landmarks, and whether its distance comes from an ankle on the
+    floor; otherwise it comes from their size."""
     assert shown is not None
     seen = rays(camera, shown.joints_px)
     forward = seen[MIDDLE].mean(axis=0)

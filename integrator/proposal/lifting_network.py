@@ -1,8 +1,8 @@
 """Joints lifted from the landmarks of an instant and a memory of those before it.
 
-Pictures say where joints are in them; how far away each is, the way people move tells (as in
-Martinez et al. 2017, of one view). It knows no outlines, so it errs elsewhere than what they
-propose.
+Pictures show the directions of joints; their depth follows from how people move (as in Martinez et
+al. 2017, for one view). The network gets no silhouettes, so its errors differ from those of the
+silhouettes' proposal.
 """
 
 from typing import NamedTuple
@@ -25,19 +25,20 @@ class Lifted(NamedTuple):
     joints_m: NDArray[np.float64]
     """(12, 3) world."""
     confidence: Vector
-    """(12,) how probably each, beside the hips, is less than 50 mm off: the network's own."""
+    """(12,) probability that each, relative to the hips, is less than 50 mm off: the network's
+    own."""
 
 
 def step(
     network: LiftingNetwork, memory: Floats | None, seen: Look, stature_m: float
 ) -> tuple[Floats, Lifted]:
-    """One more instant: what is remembered of all, and the joints of this one.
+    """One more instant: the memory after it, and its joints.
 
     Args:
         network: The weights.
-        memory: What was remembered after the instant before; None at the first.
+        memory: The memory after the instant before; None at the first.
         seen: The views of this instant.
-        stature_m: Of the person.
+        stature_m: The person's stature.
     """
     memory = np.zeros(len(network.gru_hh), np.float32) if memory is None else memory
     memory, outputs = recurrent_step(network, memory, seen.inputs)
@@ -49,7 +50,7 @@ def step(
 
 
 def aimed(joints_m: NDArray[np.float64], seen: Look, stature_m: float) -> Vector:
-    """What the network should say of true joints (12, 3): (39,) statures."""
+    """The network's target for true joints (12, 3): (39,) statures."""
     own_m = joints_m[OTHER_SIDES] if seen.mirrored else joints_m
     hips_m = own_m[HIPS].mean(axis=0)
     places, hips = (own_m - hips_m) @ seen.turn.T, seen.turn @ (hips_m - seen.middle_m)

@@ -16,36 +16,36 @@ JOINTS: Final = tuple(
     for name in ("shoulder", "elbow", "wrist", "hip", "knee", "ankle")
     for side in "lr"
 )
-"""What is proposed."""
+"""The proposed joints."""
 Bfloat16 = NDArray[np.uint16]
 """Upper halves of float32 numbers, as bits."""
 
 LINE_BYTES, PAGE_BYTES = 64, 1 << 21
-"""What memory is fetched in, and what a large page of it holds."""
+"""Bytes of a cache line, and of a large memory page."""
 
 SHIPPED: Final = Path(__file__).with_name("proposals.npz")
 SHIPPED_LIFTING: Final = Path(__file__).with_name("lifting.npz")
 VERSION: Final = 4
 MOST_BYTES: Final = 100_000_000
-"""No network is larger unpacked: the one that is installed takes 6 MB."""
+"""Upper bound of an unpacked network, bytes: the packaged one takes 6 MB."""
 OUTPUTS: Final = 4 * len(JOINTS)
-"""Three coordinates of each joint, and the confidence in each, as a logit."""
+"""Outputs: three coordinates of each joint, and the confidence in each, as a logit."""
 LIFTED_OUTPUTS: Final = 3 + OUTPUTS
-"""Where the hips' middle is, and the joints from there, and the confidence in each."""
+"""Outputs: the hips' middle, the joints relative to it, and the confidence in each."""
 
 
 class PoseNetwork(NamedTuple):
     """Principal components of a window; then two layers, a gated recurrent unit, and two layers.
 
-    The second layer adds to what the first found. Weights are (inputs, outputs), in bfloat16: a
-    product waits for its weights to come from memory. The unit is that of Cho et al. 2014 with the
-    reset gate on the hidden product; its gates are in the order reset, update, new.
+    The second layer adds to the first layer's result. Weights are (inputs, outputs), in bfloat16:
+    memory bandwidth limits a product's speed. The unit is that of Cho et al. 2014 with the reset
+    gate on the hidden product; its gates are in the order reset, update, new.
     """
 
     pca: Bfloat16
     """(CELLS, n) components."""
     pca_bias: Floats
-    """(n,) less those of the mean window."""
+    """(n,) components of the mean window, which are subtracted."""
     fc1: Bfloat16
     fc1_bias: Floats
     fc2: Bfloat16
@@ -61,7 +61,7 @@ class PoseNetwork(NamedTuple):
 
 
 class LiftingNetwork(NamedTuple):
-    """The layers of a `PoseNetwork` behind its components, of another size."""
+    """The layers of a `PoseNetwork` after its components, of another size."""
 
     fc1: Bfloat16
     fc1_bias: Floats
@@ -82,13 +82,13 @@ Network = TypeVar("Network", PoseNetwork, LiftingNetwork)
 
 @lru_cache(maxsize=1)
 def shipped() -> PoseNetwork:
-    """The network of outlines that is installed with the program."""
+    """The silhouette network in the package."""
     return load(SHIPPED, PoseNetwork)
 
 
 @lru_cache(maxsize=1)
 def shipped_lifting() -> LiftingNetwork:
-    """The network of landmarks that is installed with the program."""
+    """The landmark network in the package."""
     return load(SHIPPED_LIFTING, LiftingNetwork)
 
 
@@ -96,7 +96,7 @@ def load(path: Path, kind: type[Network]) -> Network:
     """Read a network that `save` wrote.
 
     Raises:
-        ValueError: When the file is none, is damaged or of another version.
+        ValueError: When the file is no network, damaged or of another version.
     """
     try:
         held = read_arrays(path, MOST_BYTES)
@@ -112,7 +112,8 @@ def load(path: Path, kind: type[Network]) -> Network:
 
 
 def _in_one_piece(network: Network) -> Network:
-    """The same, side by side in memory: a few large pages are found sooner than many small ones.
+    """The same array in contiguous memory on large pages: few pages are translated faster than
+    many.
 
     NumPy asks the system for large pages for an array of this size.
     """

@@ -12,10 +12,10 @@ from integrator.proposal.silhouette_window import Floats, Look
 
 SHOULDERS, ELBOWS, HIPS = slice(0, 2), slice(2, 4), slice(6, 8)
 OTHER_SIDES: Final = [i ^ 1 for i in range(len(JOINTS))]
-"""Where the same joint of the other side is."""
+"""Index of the same joint on the other side."""
 
 SEES: Final = (0, 5)
-"""Where a look says beside the windows whether each view sees."""
+"""Index in the further inputs of whether each view sees the person."""
 
 
 class Proposal(NamedTuple):
@@ -24,19 +24,19 @@ class Proposal(NamedTuple):
     joints_m: NDArray[np.float64]
     """(12, 3) world."""
     confidence: Vector
-    """(12,) how probably each is less than 50 mm off."""
+    """(12,) probability that each is less than 50 mm off."""
 
 
 def step(
     network: PoseNetwork, memory: Floats | None, seen: Look, stature_m: float
 ) -> tuple[Floats, Proposal]:
-    """One more instant: what is remembered of all, and the joints of this one.
+    """One more instant: the memory after it, and its joints.
 
     Args:
         network: The weights.
-        memory: What was remembered after the instant before; None at the first.
+        memory: The memory after the instant before; None at the first.
         seen: The views of this instant.
-        stature_m: Of the person.
+        stature_m: The person's stature.
     """
     memory = np.zeros(len(network.gru_hh), np.float32) if memory is None else memory
     inputs = _inputs(network, seen.windows, seen.beside)
@@ -67,7 +67,7 @@ def recurrent_step(
 
 @compiled
 def _inputs(network: PoseNetwork, windows: Floats, beside: Floats) -> Floats:
-    """Components of both windows, 0 of a view that does not see, and what goes beside them."""
+    """Components of both windows, 0 for a view without the person, and the further inputs."""
     size = len(network.pca_bias)
     shown = np.zeros(2 * size + len(beside), np.float32)
     for view in range(2):
@@ -82,8 +82,8 @@ def _inputs(network: PoseNetwork, windows: Floats, beside: Floats) -> Floats:
 def _product(values: Floats, weights: NDArray[np.uint16], bias: Floats) -> Floats:
     """values (n,) @ weights (n, m) + bias (m,).
 
-    Weights that meet a zero, as half of the hidden units are and most of a window, are left in
-    memory. Four rows at a time halve what is left of the work.
+    Weights that are multiplied by zero, as for half of the hidden units and most of a window, are
+    not read. Four rows at a time halve the remaining time.
     """
     total = bias.copy()
     rows = np.flatnonzero(values)
@@ -106,7 +106,7 @@ def _product(values: Floats, weights: NDArray[np.uint16], bias: Floats) -> Float
 
 @compiling(inline="always")
 def _from_bfloat16(bits: np.uint16) -> np.float32:
-    """The number that bfloat16 bits stand for."""
+    """The float32 number of bfloat16 bits."""
     return np.uint32(np.uint32(bits) << np.uint32(16)).view(np.float32)
 
 
@@ -121,7 +121,7 @@ def sigmoid(values: Floats | Vector) -> NDArray[Any]:
 
 
 def aimed(joints_m: NDArray[np.float64], seen: Look, stature_m: float) -> NDArray[np.float64]:
-    """What the network should put out, (n, 3) statures from the middle."""
+    """The network's target output, (n, 3) statures from the middle."""
     own = OTHER_SIDES if seen.mirrored else slice(None)
     found: NDArray[np.float64] = (joints_m[own] - seen.middle_m) @ seen.turn.T / stature_m
     return found

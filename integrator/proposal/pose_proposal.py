@@ -1,4 +1,4 @@
-"""The pose that the silhouettes propose, and where joints lie beside the cylinders."""
+"""The pose proposed by the silhouettes, and the joints' offsets from the cylinders."""
 
 import math
 from typing import Final, NamedTuple
@@ -19,8 +19,8 @@ from integrator.proposal.network_weights import JOINTS
 from integrator.proposal.silhouette_window import Floats, look
 
 AT: Final = np.array([JOINT_NAMES.index(name) for name in JOINTS])
-"""Where the proposed joints stand among the landmarks."""
-"""How far these lie beside their cylinders depends on how the arm is turned, and says nothing of
+"""Indices of the proposed joints among the landmarks."""
+"""Joints whose offset from their cylinders depends on the arm's turn, and does not carry over to
 another pose."""
 PELVIS, NECK, HEAD = (JOINT_NAMES.index(name) for name in ("pelvis", "neck", "head_top"))
 
@@ -30,15 +30,16 @@ OFF: Final = {
     "knee": (0.0, 0.009, 0.007),
     "ankle": (0.0, 0.009, 0.0),
 }
-"""Offset of the network's joints inwards, up and forwards from the true joints of two performers,
-statures: synthetic people have theirs elsewhere in their silhouette (docs/measurements.md)."""
+"""Offset of the network's joints inwards, up and forwards from the true joints of two
+performers, statures: synthetic people have theirs elsewhere in their silhouette
+(docs/measurements.md)."""
 JOINTS_OFF: Final = np.array(
     [
         np.multiply(OFF.get(name[2:], (0.0, 0.0, 0.0)), (-1.0 if name[0] == "l" else 1.0, 1.0, 1.0))
         for name in JOINTS
     ]
 )
-"""(12, 3) the same, to the left, up and before."""
+"""(12, 3) the same offset, to the left, up and forwards."""
 RISE: Final = (0.055, 0.080)
 """Height of the shoulders above the cylinders' when both upper arms are level, and what is added
 when they point straight up (subtracted: straight down), in lengths from pelvis to neck: robust
@@ -49,15 +50,15 @@ PLATT: Final = (0.99, -0.64)
 logit; the target is a joint less than 50 mm off. Fitted to two performers and new synthetic people
 (docs/measurements.md)."""
 CONFIDENT: Final = 0.75
-"""Mean confidence of the landmarks above which a proposal is left as it is: cylinders that match
-better than it stand farther from two performers' true joints (docs/measurements.md)."""
+"""Mean confidence of the landmarks above which a proposal is not changed: better matching
+cylinders are farther from two performers' true joints (docs/measurements.md)."""
 
 LEANS: Final = math.cos(math.radians(60.0))
-"""Cosine of the lean of a trunk from which on outlines are looked at as if it stood: the network
-has seen nobody who leans farther."""
+"""Cosine of a trunk's lean from which on silhouettes are turned as if it stood: the training
+data contain no larger lean."""
 
 HARDLY: Final = 0.01
-"""No joint is surer than its odds are with so much doubt added, where two proposals are joined."""
+"""Doubt added to each joint's odds where two proposals are joined."""
 BELIEVED: Final = 3.0
 """Factor on the odds of the lifted depths beside those of the silhouettes: of two performers 98 %
 of the depths' signs are right at 2, 99 % at 3 and 4, and the joints' error is the same at 2 to 4
@@ -75,26 +76,26 @@ fall, each camera alone (docs/measurements.md)."""
 
 
 class Memory(NamedTuple):
-    """What the networks remember of the instants before; None: nothing was shown to that one."""
+    """Memory of both networks; None: that one had no input yet."""
 
     outlines: Floats | None
     lifting: Floats | None
     alone_s: float
-    """How long one view has been alone; infinite where two never were shown."""
+    """How long one view has been alone; infinite where there never were two."""
 
 
 class PoseProposal(NamedTuple):
-    """What was proposed of one instant."""
+    """The proposal of one instant."""
 
     joints_m: NDArray[np.float64]
     """(12, 3) world, in the order of JOINTS."""
     confidence: Vector
-    """(15,) how probably each landmark is less than 50 mm off."""
+    """(15,) probability that each landmark is less than 50 mm off."""
     memory: Memory
 
     @property
     def is_confident(self) -> bool:
-        """Whether it is left as it is."""
+        """True: it must not be changed."""
         return bool(self.confidence.mean() >= CONFIDENT)
 
 
@@ -107,20 +108,20 @@ def step(
     up: Vector | None = None,
     lifts: bool = True,
 ) -> PoseProposal:
-    """The joints that silhouettes propose, whole ones where there are any, and landmarks.
+    """The joints proposed by silhouettes, by whole ones where there are any, and by landmarks.
 
-    Two that no one person can cast are two things: the larger is believed to be the person. What
-    one outline alone tells, and what outlines tell of who leans far, is joined with what is lifted
-    from the landmarks: the network of outlines guesses depths, and has seen nobody who lies.
+    Two silhouettes that no one person can cast are of two things: the larger is taken for the
+    person. The lifted joints are joined in where one silhouette is alone, and where the person
+    leans far: the silhouette network guesses depths, and its training data contain no lying person.
 
     Args:
         memory: Of the instant before; None at the first.
-        bdp: The body: its stature is the measure of all.
+        bdp: The body: its stature sets the scale.
         rig: The cameras, without distortion.
-        seen: What each view reports; None where it has nobody.
+        seen: The person in each view; None where it has none.
         since_s: Time since the instant before.
-        up: (3,) where the head is of somebody who leans far or lies, world; None: above.
-        lifts: Landmarks are lifted.
+        up: (3,) direction to the head of a person who leans far or lies, world; None: upright.
+        lifts: Whether landmarks are lifted.
     """
     any_whole = any(person is not None and not person.cut for person in seen)
     first, second = (
@@ -132,7 +133,7 @@ def step(
         areas_px = [0 if person is None else person.area_px for person in seen]
         larger = (first, None) if areas_px[0] >= areas_px[1] else (None, second)
         shown = look(larger, rig, height_m, since_s, up)
-    assert shown is not None  # one alone stands somewhere
+    assert shown is not None  # a person in a single view is assumed to stand
     before = Memory(None, None, math.inf) if memory is None else memory
     outlines, found = pose_network.step(network_weights.shipped(), before.outlines, shown, height_m)
     joints_m = found.joints_m - height_m * JOINTS_OFF @ trunk_of(found.joints_m).T
@@ -153,7 +154,7 @@ def _lifted(
     stature_m: float,
     since_s: float,
 ) -> tuple[Floats | None, Lifted | None]:
-    """What is lifted from the landmarks of an instant; None where they show no one body."""
+    """The joints lifted from the landmarks of an instant; None where these show no single body."""
     first, second = (landmark_look.shown_of(person) for person in seen)
     if first is None and second is None:
         return memory, None
@@ -166,9 +167,9 @@ def _lifted(
 def _joined(
     proposed_m: NDArray[np.float64], confidence: Vector, lifted: Lifted, alone_s: float
 ) -> tuple[NDArray[np.float64], Vector]:
-    """Joints (12, 3) of outlines and of landmarks by their odds, and the mean confidence.
+    """Joints (12, 3) of silhouettes and of landmarks, weighted by odds, and the mean confidence.
 
-    Where one view is alone the hips of both stand between what either says of their place.
+    Where one view is alone, the hips are placed between the two estimates.
     """
     lifted_m, believed = lifted.joints_m, BELIEVED
     if alone_s:
@@ -191,7 +192,7 @@ def _hips_m(joints_m: NDArray[np.float64]) -> Vector:
 
 
 def up_of(bdp: Bdp, pose: Vector | None) -> Vector | None:
-    """Where the head is of somebody in a pose who leans far or lies, (3,); None of who does not."""
+    """Direction to the head of a person who leans far or lies, (3,); None otherwise."""
     if pose is None:
         return None
     up: Vector = trunk_axes(body_vector(bdp), pose)[:, 1]
@@ -199,7 +200,7 @@ def up_of(bdp: Bdp, pose: Vector | None) -> Vector | None:
 
 
 def of_landmarks(own: Vector) -> Vector:
-    """The confidence in all landmarks, (15,), of that in the joints, (12,)."""
+    """The confidence in all landmarks, (15,), from that in the joints, (12,)."""
     confidence = np.zeros(len(JOINT_NAMES))
     confidence[AT] = own
     confidence[PELVIS] = own[pose_network.HIPS].mean()
@@ -208,7 +209,8 @@ def of_landmarks(own: Vector) -> Vector:
 
 
 def probability(confidence: Vector) -> Vector:
-    """How probably joints are less than 50 mm off, of the network's own confidence in (0, 1)."""
+    """Probability that joints are less than 50 mm off, from the network's own confidence in (0,
+    1)."""
     slope, offset = PLATT
     found: Vector = 1.0 / (1.0 + np.exp(-offset) * ((1.0 - confidence) / confidence) ** slope)
     return found
@@ -217,10 +219,10 @@ def probability(confidence: Vector) -> Vector:
 def pose_and_rest(
     body: Vector, before: Vector, found: NDArray[np.float64]
 ) -> tuple[Vector, NDArray[np.float64]]:
-    """The pose of found joints, and what the landmarks still miss, (15, 3) in the trunk's axes.
+    """The pose of the joints, and the landmarks' remaining offsets, (15, 3) in the trunk's axes.
 
-    Shoulders rise with their arms and people differ: both are more than cylinders can show. The
-    neck is where the shoulders say, but does not rise with the arms.
+    Shoulders rise with their arms and people differ: cylinders can represent neither. The neck
+    follows from the shoulders, but does not rise with the arms.
     """
     pose = pose_of(found, body, before)
     rest = np.zeros((len(JOINT_NAMES), 3))
@@ -233,7 +235,7 @@ def pose_and_rest(
 
 
 def _shoulders_rise(found: NDArray[np.float64], landmarks: NDArray[np.float64]) -> float:
-    """How far the arms of found joints (12, 3) lift the shoulders, of a body with landmarks."""
+    """Height by which the arms of joints (12, 3) lift the shoulders, for a body with landmarks."""
     trunk = landmarks[NECK] - landmarks[PELVIS]
     length_m = float(np.linalg.norm(trunk))
     arms = found[pose_network.ELBOWS] - found[pose_network.SHOULDERS]

@@ -1,4 +1,4 @@
-"""What each view shows of somebody, in a window as large as the person."""
+"""Network input from each view's silhouette: a window scaled to the person."""
 
 from functools import lru_cache
 from typing import Final, NamedTuple
@@ -18,55 +18,54 @@ from integrator.rig.body_position import UP_AXIS, triangulate
 Floats = NDArray[np.float32]
 
 ROWS, COLUMNS = 48, 40
-"""Cells of the window that is looked at in each view."""
+"""Number of cells of the window."""
 UP, DOWN, ASIDE = 0.75, 0.63, 0.56
-"""How far the window reaches from the middle of the silhouette, in statures: raised arms above,
-feet below, stretched arms aside."""
+"""Extent of the window from the middle of the silhouette, statures: raised arms above, feet
+below, stretched arms aside."""
 TO_A_SIDE: Final = 1e-6
-"""Sine of the angle from one camera's sight to another's from which it goes to a side."""
+"""Sine of the angle between two cameras' axes from which on they are on different sides."""
 FINER: Final = 2
 """Samples of the silhouette across a cell."""
 
 CELLS: Final = ROWS * COLUMNS
 BESIDE: Final = 11
-"""What is said beside the windows: of each view whether it sees, where its camera is and its
-scale; how long it has been since the look before."""
+"""Number of inputs beside the windows: for each view whether it sees, the place of its camera
+and its scale; the time since the input before."""
 LONGEST_S, USUAL_S = 0.4, 1 / 15
-"""A longer gap says no more; how time is measured."""
+"""Upper bound of that time, seconds, and its unit."""
 ABOVE_M: Final = 0.1
-"""Which way is up in a picture is seen over this length."""
+"""Length, metres, over which the upward direction in a picture is measured."""
 STEEPEST: Final = 0.75
-"""Sine of the angle over the horizon of the body beyond which a camera sees along it."""
+"""Sine of the elevation beyond which a camera looks along a body."""
 ALONG: Final = 1e-3
-"""Sine of the angle to an axis of what is along it."""
+"""Sine of the angle below which a direction counts as along an axis."""
 NEARNESS: Final = 4.0
-"""Brings stature over distance to about one."""
+"""Factor that brings stature over distance to about one."""
 NEAR_M, FAR_M = 1.0, 12.0
-"""Where one camera alone looks for somebody."""
+"""Assumed distance of a person from a single camera, metres."""
 
 
 class Look(NamedTuple):
-    """What the views show, and where that is."""
+    """The network input of the views, and its frame."""
 
     windows: Floats
-    """(2, CELLS) how much of each cell is covered; 0 where a view does not see."""
+    """(2, CELLS) covered share of each cell; 0 for a view without the person."""
     beside: Floats
-    """(BESIDE,)"""
+    """(BESIDE,) inputs beside the windows."""
     middle_m: Vector
-    """(3,) of the body, world."""
+    """(3,) place of the body, world."""
     turn: Vector
-    """(3, 3) rows: the axes of the frame of the proposal in the world; left-handed in a mirror."""
+    """(3, 3) rows: the axes of the proposal's frame in the world; left-handed where mirrored."""
     mirrored: bool = False
-    """The windows are in a mirror: right limbs are left ones there."""
+    """True: the windows are mirrored, so right limbs are left ones."""
 
 
 @lru_cache(maxsize=8)
 def axes_of(one: Camera, other: Camera) -> Vector:
-    """Axes of the proposals' frame, rows (3, 3): y up, z towards one camera.
+    """Axes of the proposal's frame, rows (3, 3): y up, z towards one camera.
 
-    x is right in that camera, were it not rolled, or left in a mirror: there the other always
-    stands where the paper's camera 2 does, to the left, as it does in most of what the network is
-    trained on.
+    x points to the right of that camera, roll removed, or to the left where mirrored. So the other
+    camera always stands where the paper's camera 2 does, to the left, as in most training data.
     """
     first, second = np.array(one.R)[2], np.array(other.R)[2]
     right = np.cross(first, UP_AXIS)
@@ -84,14 +83,14 @@ def look(
     since_s: float,
     up: Vector | None = None,
 ) -> Look | None:
-    """The silhouettes as the network wants them; None where their rays do not meet before both.
+    """The silhouettes as network input; None where their rays do not meet in front of both cameras.
 
     Args:
-        masks: Of the views that see somebody, (H, W), not empty; None for the others.
+        masks: Silhouettes of the views, (H, W), not empty; None for a view without the person.
         rig: The cameras; their world has y up and its floor at 0.
-        stature_m: Of the person.
-        since_s: Time since the look before.
-        up: (3,) where the head is of somebody who leans far or lies, world; None: above.
+        stature_m: The person's stature.
+        since_s: Time since the input before.
+        up: (3,) direction to the head of a person who leans far or lies, world; None: upright.
     """
     middle_m = _middle_m(masks, rig)
     if middle_m is None:
@@ -117,8 +116,8 @@ def look(
 def _from_a_side(
     masks: tuple[Mask | None, Mask | None], rig: Rig, middle_m: Vector, up: Vector
 ) -> tuple[Mask | None, Mask | None]:
-    """Without the view that sees somebody along the body, where the other sees them from a side:
-    nothing like it was learnt from."""
+    """The views without one that looks along the body, where the other sees it from a side: the
+    training data contain no such view."""
     first, second = masks
     rises = [abs(float(_away(camera, middle_m) @ up)) for camera in rig.cameras]
     if first is None or second is None or max(rises) <= STEEPEST:
@@ -129,8 +128,8 @@ def _from_a_side(
 def _about(
     masks: tuple[Mask | None, Mask | None], rig: Rig, middle_m: Vector, up: Vector
 ) -> Vector:
-    """Axes as those of `axes_of` about who leans far, by the views that see: y to the head, z
-    towards camera 1; camera 2 alone is where the paper's is, to the left."""
+    """Axes like those of `axes_of` for a person who leans far: y to the head, z towards camera
+    1; where camera 2 is alone it has the place of the paper's, to the left."""
     first, second = (_across(_away(camera, middle_m), up) for camera in rig.cameras)
     if masks[0] is None:
         return np.stack([-second, up, np.cross(-second, up)])
@@ -146,7 +145,8 @@ def _away(camera: Camera, middle_m: Vector) -> Vector:
 
 
 def _across(away: Vector, up: Vector) -> Vector:
-    """What of a direction is across an axis, unit length; anything that is, of one along it."""
+    """The part of a direction perpendicular to an axis, unit length; any perpendicular for one
+    along it."""
     for tried in (away, *np.eye(3)):
         across = tried - (tried @ up) * up
         length = float(np.linalg.norm(across))
@@ -162,7 +162,7 @@ def _tell(
     stature_m: float,
     out: NDArray[np.float32],
 ) -> None:
-    """That a view sees, where its camera is and its scale, (5,)."""
+    """One view's inputs beside its window, (5,): that it sees, its camera's place, its scale."""
     far = np.sqrt((away_m * away_m).sum())
     out[0], out[4] = 1.0, NEARNESS * stature_m / far
     for i in range(3):
@@ -170,7 +170,8 @@ def _tell(
 
 
 def _middle_m(masks: tuple[Mask | None, Mask | None], rig: Rig) -> Vector | None:
-    """Where the middles of the silhouettes meet; of one alone, where its feet stand."""
+    """Intersection of the rays to the silhouettes' middles; for a single view the place where
+    its feet stand."""
     first, second = masks
     if first is not None and second is not None:
         found = triangulate(
@@ -187,7 +188,7 @@ def _middle_m(masks: tuple[Mask | None, Mask | None], rig: Rig) -> Vector | None
 
 
 def standing_m(mask: Mask, camera: Camera) -> Vector:
-    """The middle of a silhouette whose lowest point is on the floor, as its picture shows down."""
+    """The middle of a silhouette whose lowest point, along down in its picture, is on the floor."""
     middle_px = centroid_px(mask)
     eye, middle = centre(camera), ray(camera, middle_px)
     downwards = _downwards(camera, eye + middle)
@@ -205,19 +206,19 @@ def standing_m(mask: Mask, camera: Camera) -> Vector:
 
 
 def _downwards(camera: Camera, place_m: Vector) -> Vector:
-    """Which way is down in a picture at a place before its camera, (2,), unit length."""
+    """The downward direction in a picture at a place in front of its camera, (2,), unit length."""
     at, above = project(camera, np.stack([place_m, place_m + ABOVE_M * UP_AXIS]))
     down: Vector = (at - above) / max(float(np.linalg.norm(at - above)), 1e-9)
     return down
 
 
 def _depth_m(camera: Camera, place_m: Vector) -> float:
-    """How far before a camera a place is; negative behind it, NaN where there is no place."""
+    """Depth of a place in a camera; negative behind it, NaN where there is no place."""
     return float(arrays_of(camera).R[2] @ place_m + camera.t[2])
 
 
 def _cells(mask: Mask, camera: Camera, middle_m: Vector, stature_m: float, up: Vector) -> Floats:
-    """How much of each cell is covered, (ROWS, COLUMNS): upright, as large as the person."""
+    """Covered share of each cell, (ROWS, COLUMNS): upright, scaled to the person."""
     at_and_above = project(camera, np.stack([middle_m, middle_m + ABOVE_M * up]))
     size_px = camera.K[0][0] * stature_m / _depth_m(camera, middle_m)
     fine = cv2.warpAffine(
@@ -232,11 +233,11 @@ def _cells(mask: Mask, camera: Camera, middle_m: Vector, stature_m: float, up: V
 
 @compiled
 def _warp(at_and_above: NDArray[np.float64], size_px: float) -> NDArray[np.float64]:
-    """From samples of the window to the picture, (2, 3), as OpenCV wants it.
+    """Affine map from samples of the window to the picture, (2, 3), in OpenCV's form.
 
     Args:
         at_and_above: The middle of the body and a place above it, (2, 2) px.
-        size_px: A stature there.
+        size_px: Pixels per stature there.
     """
     up = at_and_above[1] - at_and_above[0]
     up /= max(np.hypot(up[0], up[1]), 1e-9)

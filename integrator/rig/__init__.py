@@ -1,1 +1,1 @@
-"""Where the cameras stand, and where in the world a body is that they see (section 4.1)."""
+"""Where the cameras are, and where a body is in the world that they see (section 4.1)."""

@@ -1,4 +1,4 @@
-"""A rig for pictures that come without a calibration: the paper's kind, sized by the person."""
+"""A rig for uncalibrated pictures: the paper's arrangement, scaled by the person."""
 
 from typing import Final
 
@@ -10,15 +10,16 @@ FOCAL_SHARE: Final = 1.25
 
 
 def assumed_rig(first: Observation, second: Observation, stature_m: float) -> Rig:
-    """Cameras at the distance at which a person of a stature is as high as seen now.
+    """Cameras at the distance at which a person of the assumed stature has the observed height.
 
-    Both cameras are level and look at the person, who stands at the origin; the floor is where
-    the silhouette ends. Lengths are then right to the share that the stature is wrong.
+    Both cameras are level and look at the person, who stands at the origin; the floor is where the
+    silhouette ends. All lengths then have the relative error of the stature.
 
     Args:
-        first: Who stands upright, wholly in view of viewer 1.
-        second: The same of viewer 2; of the same view where only one shows the whole person.
-        stature_m: What is assumed of the person.
+        first: A person who stands upright, wholly in view 1.
+        second: The same person in view 2, or in the same view where only one shows the whole
+            person.
+        stature_m: Assumed stature of the person.
     """
     views = []
     for person in (first, second):

@@ -1,4 +1,4 @@
-"""The two views that see a person best: what takes silhouettes of two is given these."""
+"""The two views that see a person best, for methods that take two silhouettes."""
 
 from itertools import combinations
 from typing import Final, NamedTuple
@@ -13,24 +13,24 @@ from common.raster.silhouette_report import centroid_px, unpack
 from common.rig.camera import Camera, Rig, ray
 
 Places = tuple[int, int]
-"""Of two cameras in the rig, the lower first."""
+"""Numbers of two of the rig's cameras, the lower first."""
 
 CUT: Final = 0.5
-"""Worth of a view that the person leaves, beside one that shows all of them."""
+"""Weight of a view that shows a part of the person, relative to one that shows all of them."""
 KEPT: Final = 1.5
-"""Worth of the pair of the instant before, beside another: what the networks remember is by it."""
+"""Weight of the previous pair, relative to another: the networks' memory belongs to it."""
 
 
 def best_pair(before: Places | None, rig: Rig, seen: Seen) -> Places:
     """The pair of an instant.
 
-    Two views stay the pair while both see the whole person. Otherwise it is of those that see
-    the person, whole ones before others, whose sight lines are nearest to a right angle.
+    Two views stay the pair while both see the whole person. Otherwise it is chosen among the views
+    that see the person, whole ones first, by lines of sight nearest to a right angle.
 
     Args:
         before: The pair of the instant before; None at the first.
-        rig: V cameras without distortion; the only one of a rig is both.
-        seen: Of each view, as without distortion; None where it has no person.
+        rig: V cameras without distortion; a rig's only camera is both.
+        seen: The person in each view, without distortion; None where it has none.
     """
     shown = [n for n, person in enumerate(seen) if person is not None]
     whole = {n for n in shown if not _is_cut(seen[n])}
@@ -56,7 +56,7 @@ def _is_cut(person: Observation | None) -> bool:
 
 
 def _sight_line(person: Observation | None, camera: Camera) -> Vector:
-    """Towards the middle of a silhouette, (3,) unit length, world."""
+    """Direction to the middle of a silhouette, (3,) unit length, world."""
     assert person is not None
     return ray(camera, centroid_px(unpack(person)))
 
@@ -66,7 +66,7 @@ def _sine(one: Vector, other: Vector) -> float:
 
 
 class Two(NamedTuple):
-    """A pair of views, for what takes two."""
+    """A pair of views, for methods that take two."""
 
     rig: Rig
     """Two cameras; the only one of a rig twice."""
@@ -74,7 +74,7 @@ class Two(NamedTuple):
 
 
 def two_of(rig: Rig, seen: Seen, pair: Places) -> Two:
-    """The views of a pair; an only camera's has nothing beside it."""
+    """The views of a pair; an only camera's view is paired with None."""
     one, other = pair
     cameras = tuple(rig.cameras[n] for n in pair)
     own = rig if cameras == rig.cameras else structs.replace(rig, cameras=cameras)

@@ -1,4 +1,4 @@
-"""Where the body is, how large it is seen there and from which side (sections 4.2 and 4.4)."""
+"""The body's place, its scale there and its facing in each view (sections 4.2 and 4.4)."""
 
 import math
 from typing import Final
@@ -16,18 +16,18 @@ from common.rig.camera import Camera, PaperRig, Rig, as_paper_rig, centre, proje
 Roots = tuple[Pixel | None, Pixel | None]
 
 AHEAD_M: Final = 4.0
-"""Depth of somebody whom one view alone shows, where the place before is not before its camera: the
-paper's cameras stand about so far away."""
+"""Depth of a person in a single view, metres, where the previous place is not in front of its
+camera: the usual distance of the paper's cameras."""
 UP_AXIS: Final = np.array([0.0, 1.0, 0.0])
 MOST_ASIDE: Final = 0.5
-"""Cosine of the angle between both views of a body at which the second sees its flank still: from
-60 degrees trunks of `thesis_bdp` seem 1.2 times as deep as they are, from 45 1.4 times."""
+"""Cosine of the angle between both views of a body at which the second still sees its flank:
+from 60 degrees trunks of `thesis_bdp` seem 1.2 times as deep as they are, from 45 1.4 times."""
 PARALLEL: Final = 1e-9
-"""Two rays whose directions span less than this (sine squared of their angle) never meet."""
+"""Squared sine of the angle between two rays below which they count as parallel."""
 
 
 def roots_of(seen: Seen) -> Roots:
-    """Where each view has the navel, as searched for, or else its silhouette's middle."""
+    """The navel in each view, as searched for, or else the middle of its silhouette."""
     first, second = (None if person is None else _root_px(person) for person in seen)
     return first, second
 
@@ -42,15 +42,15 @@ def _root_px(person: Observation) -> Pixel:
 def place_of(rig: Rig, roots_px: Roots, before_m: Vector, facade: int) -> Vector:
     """The navel in the world, (3,), metres, from its pixels in one or both views.
 
-    In a rig of the paper's kind X and Z come from the two columns (Eq. 3) and Y from the row of
-    the facade view (P50); in any other from the point nearest to both rays. One view alone
-    keeps the depth that the body had before, and so does the facade view where both cannot mean
-    the same person: their rays meet in no place before both cameras.
+    In a rig of the paper's kind X and Z come from the two columns (Eq. 3) and Y from the row of the
+    facade view (P50); in any other the place is the point nearest to both rays. A single view keeps
+    the body's previous depth, and so does the facade view where the rays of both cannot belong to
+    one person: they do not meet in front of both cameras.
 
     Args:
         rig: Two cameras.
-        roots_px: Of each view; None where it has none.
-        before_m: Where the navel was, (3,).
+        roots_px: The navel in each view; None where it has none.
+        before_m: Previous place of the navel, (3,).
         facade: 0 or 1: which view sees the facade.
     """
     first, second = roots_px
@@ -65,15 +65,16 @@ def place_of(rig: Rig, roots_px: Roots, before_m: Vector, facade: int) -> Vector
 
 
 def upright_place_of(rig: Rig, root_px: Pixel, above_px: Pixel) -> Vector:
-    """The navel of somebody upright, (3,), metres, where view 2 tells a place above it alone.
+    """The navel of an upright person, (3,), metres, where view 2 shows only the vertical line that
+    it is on.
 
-    In a rig of the paper's kind from the two columns, as `place_of`; in any other from where view
-    1's ray goes through the upright plane that view 2's is in. NaN where it is in it too.
+    In a rig of the paper's kind from the two columns, as `place_of`; in any other the intersection
+    of view 1's ray with the vertical plane of view 2's. NaN where the ray lies in that plane.
 
     Args:
         rig: Two cameras.
         root_px: The navel in view 1.
-        above_px: In view 2, whatever is above it or below.
+        above_px: Any point vertically above or below it in view 2.
     """
     if as_paper_rig(rig) is not None:
         return place_of(rig, (root_px, above_px), np.zeros(3), 0)
@@ -88,7 +89,7 @@ def upright_place_of(rig: Rig, root_px: Pixel, above_px: Pixel) -> Vector:
 
 
 def sees_flank(rig: Rig, place_m: Vector) -> bool:
-    """Whether view 2 sees from the side whom view 1 has before it, about as the paper's does."""
+    """Whether view 2 sees the side of a person who faces view 1, about as the paper's does."""
     one, other = ((centre(camera) - place_m)[[0, 2]] for camera in rig.cameras)
     return abs(float(one @ other)) <= MOST_ASIDE * float(
         np.linalg.norm(one) * np.linalg.norm(other)
@@ -109,14 +110,14 @@ def _where_rays_meet(rig: Rig, roots_px: tuple[Pixel, Pixel], facade: int) -> Ve
 
 
 def scales_at(rig: Rig, place_m: Vector) -> tuple[float, ...]:
-    """Size of a metre at a place, in each picture, pixels; NaN where it is behind the camera."""
+    """Pixels per metre at a place, in each picture; NaN where it is behind the camera."""
     return tuple(px_per_m(camera, place_m) for camera in rig.cameras)
 
 
 def scales_since(rig: Rig, place_m: Vector, measured_at_m: Vector) -> tuple[float, ...]:
     """The same by the perspective scaling factors since the body was measured (P45).
 
-    In a rig of the paper's kind: the scale where the BDPs were taken, times r_t1 and r_t2.
+    In a rig of the paper's kind: the scale where the BDPs were measured, times r_t1 and r_t2.
     """
     paper = as_paper_rig(rig)
     if paper is None:
@@ -131,7 +132,7 @@ def scales_since(rig: Rig, place_m: Vector, measured_at_m: Vector) -> tuple[floa
 
 
 def pixels_of(rig: Rig, place_m: Vector) -> tuple[Pixel, ...]:
-    """Where each view shows a place; the picture's centre where it cannot."""
+    """Pixels of a place in each view; the picture's centre where it is not visible."""
     found: list[Pixel] = []
     for camera in rig.cameras:
         u, v = project(camera, place_m[None])[0].tolist()
@@ -141,7 +142,8 @@ def pixels_of(rig: Rig, place_m: Vector) -> tuple[Pixel, ...]:
 
 
 def _at_depth(camera: Camera, pixel: Pixel, before_m: Vector) -> Vector:
-    """The point that a pixel shows at the depth of another point, if that is before the camera."""
+    """The point on a pixel's ray at the depth of another point, if that is in front of the
+    camera."""
     forward = np.array(camera.R)[2]
     depth = float(forward @ (before_m - centre(camera)))
     if depth < NEAREST_M:
@@ -152,8 +154,8 @@ def _at_depth(camera: Camera, pixel: Pixel, before_m: Vector) -> Vector:
 
 
 def facing_of(rig: Rig, pose: Vector) -> tuple[Facing, ...]:
-    """What each viewer sees of a pose that is known: the facade where the person is more before it,
-    or behind it, than midway between the view that has them most so and the one least."""
+    """The facing in each view of a known pose: facade where the direction to the camera is
+    nearer to the body's front or back than midway between both views'."""
     yaw = math.radians(pose[POSE_INDEX["torso_y"]])
     shares = []
     for camera in rig.cameras:
@@ -171,8 +173,8 @@ def ground_position(x1_px: float, z2_px: float, rig: PaperRig) -> tuple[float, f
     """D_X and D_Z of the point that both cameras of the paper's rig see, metres.
 
     The two lines x1 = lambda1 X / (Zc1 - Z) and z2 = lambda2 Z / (X - Xc2), solved. The printed
-    form divides by x1 and z2, so it is 0/0 where the body starts; cleared of them it is exact
-    everywhere in view.
+    form divides by x1 and z2, so it is 0/0 where the body starts; this form is exact everywhere in
+    view.
 
     Args:
         x1_px: Column in picture 1, from the centre column, right positive.
@@ -193,8 +195,8 @@ def scaling_factors(
 ) -> tuple[float, float]:
     """r_t1 and r_t2: size in each picture over the size where the BDPs were measured.
 
-    The ratio of depths, which is what eq. (4) comes to when its reference lies on the axes; off
-    them eq. (4) is some percent wrong (3 % at 1 m), so it is not used.
+    The ratio of depths, to which eq. (4) reduces when its reference lies on the axes; off the axes
+    eq. (4) has an error of some percent (3 % at 1 m), so it is not used.
 
     Args:
         position_m: (X, Z) of the body now.
@@ -213,8 +215,8 @@ def scaling_factors(
 def triangulate(cameras: tuple[Camera, Camera], pixels: tuple[Pixel, Pixel]) -> Vector:
     """The point nearest to both rays (least squares), shape (3,), world metres.
 
-    It is eq. (3) for cameras that stand anywhere: the middle of the shortest line between the
-    rays. NaN where these are parallel.
+    It is eq. (3) for cameras in any arrangement: the middle of the shortest line between the rays.
+    NaN where these are parallel.
     """
     first, second = (ray(camera, pixel) for camera, pixel in zip(cameras, pixels, strict=True))
     middle: Vector = _meeting(centre(cameras[0]), first, centre(cameras[1]), second)

@@ -1,8 +1,8 @@
-"""One camera without a calibration: how far it looks down, and how high it hangs, by whom it saw.
+"""One uncalibrated camera: its downward tilt and its height, from the person in its pictures.
 
-Somebody upright who comes nearer along the floor is taller in the picture, and by how much tells
-where its horizon is. The thesis takes it for the middle of the picture (3.1.5), which is true of a
-level camera alone: of one that hangs under the ceiling it has people lean, and its floor above it.
+An upright person who comes nearer along the floor grows in the picture, and the rate shows where
+the horizon is. The thesis takes the middle of the picture for it (3.1.5), which holds for a level
+camera alone: under a ceiling camera people would lean, and the floor would rise.
 """
 
 from typing import Final
@@ -16,39 +16,40 @@ from common.rig.camera import Camera, Rig, as_matrix, as_row
 from integrator.rig.assumed_rig import FOCAL_SHARE
 
 TILTS_DEG: Final = np.arange(-20.0, 51.0)
-"""Downwards; those that are looked at."""
+"""Downward tilts that are tried, radians."""
 LEVEL: Final = np.zeros(1)
 HEIGHTS_M: Final = np.geomspace(0.25, 5.0, 76)
-"""Of the camera above the floor; those that are looked at."""
+"""Heights of the camera above the floor that are tried, metres."""
 NEAR: Final = 0.06
-"""Share of the camera's height by which an upright person's own sight is off. Like those that
-follow chosen on made-up people before cameras that hang anywhere: seeds 700 to 735, tilts off by 9
-degrees, 16 where they were taken for level."""
+"""Standard deviation of one observation, as a share of the camera's height. This and the
+following were chosen on synthetic people before cameras at any height: seeds 700 to 735, tilts
+off by 9 degrees, 16 where they were taken for level."""
 SIGHTS: Final = (120.0, 30.0)
-"""What a film's sights weigh beside what is known beforehand: by the square of how far along the
-floor the person was seen, rows by their height, and at most. Feet rise with each step, too."""
+"""Weight of a clip's observations relative to the prior: the square of the range of distances
+along the floor, over the person's height, and its upper bound. Feet rise with each step, too."""
 FARTHEST: Final = 0.05
-"""Quantile of the rows in which they stood farthest, and nearest."""
+"""Quantiles of the rows at which the person stood farthest and nearest."""
 LEVEL_DEG: Final = 15.0
-"""Most cameras are level within that."""
+"""Prior standard deviation of the tilt."""
 USUAL_M: Final = (0.8, 2.5)
-"""Most cameras stand or hang so high."""
+"""Prior range of the height: most cameras stand or hang so high."""
 UNUSUAL: Final = 0.25
-"""How fast other heights become unlikely, as a share of them."""
+"""Relative standard deviation of the height outside that range."""
 MOST_SIGHTS: Final = 300
-"""So many tell it."""
+"""Fewest observations."""
 FARTHEST_M: Final = 12.0
-"""Nobody stands farther away."""
+"""Largest distance of a person, metres."""
 LOWEST_M: Final = 1e-3
-"""Instead of a height of a camera under the floor."""
+"""Height used instead of one below the floor."""
 
 
 def assumed_rig_of_one(person: Observation, stature_m: float) -> Rig:
-    """The rig of a run of one view, by its first sight of somebody upright, wholly in view.
+    """The rig of a run with one view, from its first observation of an upright person, wholly in
+    view.
 
     Args:
-        person: Of that sight.
-        stature_m: What is assumed of the person.
+        person: That observation.
+        stature_m: Assumed stature of the person.
     """
     size = (person.width, person.height)
     sight = np.array([[person.box.top, person.box.bottom + 1.0]])
@@ -62,14 +63,14 @@ def camera_of_sights(
     stature_m: float,
     tilts_deg: Vector = TILTS_DEG,
 ) -> Camera:
-    """The camera that looks along -z at the origin, before which the person stood mostly.
+    """The camera at the origin's side that looks along -z, before which the person mostly stood.
 
     Args:
         size: Width and height of the picture.
-        sights: (n, 2) rows of the crown and below the feet of the person, wholly in view; those in
-            which they did not stand upright are left out by themselves as long as they are few.
-        stature_m: What is assumed of the person.
-        tilts_deg: Those that it may have; of the thesis's camera `LEVEL` alone.
+        sights: (n, 2) rows of the crown and below the feet of the person, wholly in view; rows of
+            other postures are rejected as outliers as long as they are few.
+        stature_m: Assumed stature of the person.
+        tilts_deg: Possible tilts; for the thesis's camera `LEVEL` alone.
     """
     focal = FOCAL_SHARE * size[0]
     some = sights[:: max(1, len(sights) // MOST_SIGHTS)]
@@ -83,7 +84,7 @@ def camera_of_sights(
 
 
 def _weight(sights: NDArray[np.float64]) -> float:
-    """How much sights tell of a tilt: nothing where the person stood at one place."""
+    """Weight of the observations: none where the person stood at one place."""
     farthest, nearest = np.quantile(sights[:, 1], (FARTHEST, 1.0 - FARTHEST))
     share = (nearest - farthest) / np.median(sights[:, 1] - sights[:, 0])
     return float(min(SIGHTS[0] * share**2, SIGHTS[1]))
@@ -95,8 +96,8 @@ def _likeliest(
     """Tilt of a camera, radians downwards, and its height, metres.
 
     Args:
-        down: (n, 2) angles of crowns and soles under the middle of the picture.
-        weight: Of these.
+        down: (n, 2) angles of crowns and soles below the middle of the picture.
+        weight: Weight of the observations.
         stature_m: As above; likewise `tilts_deg`.
     """
     steep = np.tan(np.radians(tilts_deg)[:, None, None] + down)

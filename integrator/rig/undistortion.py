@@ -1,4 +1,4 @@
-"""Lens distortion undone: the kernel and the network take pictures without distortion."""
+"""Removal of lens distortion: the kernel and the network expect pictures without it."""
 
 from functools import lru_cache
 from itertools import islice
@@ -17,7 +17,7 @@ from common.rig.camera import Camera, Rig
 
 
 def undistorted_rig(rig: Rig) -> Rig:
-    """The cameras that take pictures without distortion."""
+    """The cameras without distortion."""
     if not any(any(camera.distortion) for camera in rig.cameras):
         return rig
     cameras = tuple(undistorted_camera(camera) for camera in rig.cameras)
@@ -25,12 +25,13 @@ def undistorted_rig(rig: Rig) -> Rig:
 
 
 def undistorted_camera(camera: Camera) -> Camera:
-    """The camera that takes such pictures."""
+    """The camera without distortion."""
     return msgspec.structs.replace(camera, distortion=()) if any(camera.distortion) else camera
 
 
 def undistorted_instant(rig: Rig | None, instant: Instant) -> Instant:
-    """The views of an instant as such cameras would give rise to; as they are of unknown ones."""
+    """The views of an instant as undistorted cameras would give them; those of unknown cameras
+    unchanged."""
     if rig is None:
         return instant
     views = tuple(
@@ -41,17 +42,17 @@ def undistorted_instant(rig: Rig | None, instant: Instant) -> Instant:
 
 
 def undistorted_view(view: View, camera: Camera) -> View:
-    """A view with its person as without distortion."""
+    """A view with its person, without distortion."""
     if view.person is None or not any(camera.distortion):
         return view
     return with_person(view, undistorted_observation(view.person, camera))
 
 
 def undistorted_observation(seen: Observation, camera: Camera) -> Observation:
-    """A person with silhouette, box, area, navel and landmarks as without distortion.
+    """A person with silhouette, box, area, navel and landmarks without distortion.
 
-    What the lens shows beyond the border of that picture is cut off; a person of whom nothing
-    would be left stays as they are, as does everything where nothing is bent.
+    What the lens shows beyond the border of that picture is cut off; a person of whom nothing would
+    be left is not changed, nor is anything under a lens without distortion.
     """
     if not any(camera.distortion):
         return seen
@@ -95,7 +96,7 @@ def _undistorted_landmarks(shown: Landmarks | None, camera: Camera) -> Landmarks
 
 
 def undistorted(mask: Mask, camera: Camera) -> Mask:
-    """A silhouette (H, W) as the camera would show it without distortion; itself where it is."""
+    """A silhouette (H, W) as the camera would show it without distortion."""
     if not any(camera.distortion):
         return mask
     across, down = _maps(camera, mask.shape[1], mask.shape[0])
@@ -106,7 +107,8 @@ def undistorted(mask: Mask, camera: Camera) -> Mask:
 def _maps(
     camera: Camera, width: int, height: int
 ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """Where the bent picture has each undistorted pixel; OpenCV's begin in their middle."""
+    """Place in the distorted picture of each undistorted pixel; OpenCV's coordinates begin in a
+    pixel's middle."""
     K = np.array(camera.K)
     K[:2, 2] -= 0.5
     across, down = cv2.initUndistortRectifyMap(

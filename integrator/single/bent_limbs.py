@@ -1,4 +1,4 @@
-"""Forearms and shanks that bend as they can: what one outline tells of their depth is a guess."""
+"""Forearms and shanks that bend as joints allow: their depth from one silhouette is a guess."""
 
 from typing import Final
 
@@ -10,16 +10,18 @@ from integrator.single import reflection
 from integrator.single.sight import Sight, posed
 
 LOWER: Final = [limb for limb, name in enumerate(LIMBS) if "lower" in name]
-"""Of LIMBS."""
+"""Indices in LIMBS."""
 BEYOND_M: Final = 0.05
-"""A limb whose end its joints would move so far leans the wrong way, if it fits the other way."""
+"""Displacement of a limb's end by joint limits, metres, beyond which the limb is mirrored in
+depth, if its mirror image is within them."""
 
 
 def bent(sight: Sight, joints_m: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The joints (15, 3), lower limbs mirrored in depth where only that is within the limits.
+    """The joints (15, 3), with lower limbs mirrored in depth where only the mirror image is within
+    limits.
 
     Args:
-        sight: Of the instant.
+        sight: One view of the instant.
         joints_m: (15, 3) world.
     """
     for limb in LOWER:
@@ -32,6 +34,6 @@ def bent(sight: Sight, joints_m: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def _moved_m(sight: Sight, joints_m: NDArray[np.float64], limb: int) -> float:
-    """How far limits move the end of a limb."""
+    """Displacement of a limb's end by the limits."""
     end = LIMB_ENDS[limb, 1]
     return float(np.linalg.norm(posed(sight, joints_m)[1][end] - joints_m[end]))

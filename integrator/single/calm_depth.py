@@ -1,4 +1,4 @@
-"""How far away the joints of one view are: as calm as the picture is."""
+"""Depth of the joints in a single view: no more motion than the picture shows."""
 
 import math
 from typing import Final, NamedTuple
@@ -10,56 +10,56 @@ from numpy.typing import NDArray
 from common.body.body import JOINT_NAMES, Vector
 
 COMMON_M: Final = 0.015
-"""Standard deviation of a proposed distance that all joints share: of the whole body's."""
+"""Standard deviation of a proposed distance that all joints share: the whole body's."""
 OWN_M: Final = 0.006
-"""Standard deviation of a proposed distance that each joint has besides."""
+"""Standard deviation of each joint's own proposed distance."""
 SMOOTH_S: Final = 0.13
 """Time constant by which lines of sight are smoothed, to see whether they move."""
 TREMOR_M_S: Final = 0.04
-"""How fast smooth lines of sight seem to move, at the joints of a person who stands still."""
+"""Angular speed that smoothed lines of sight show at the joints of a person who stands still."""
 DEEPER: Final = 24.0
-"""How many times as far as it moves across the line of sight a joint, or the body, may move along
-it: who walks towards the camera hardly moves across it. With fewer, made-up people who walk so lag;
-with more, those who stand tremble."""
+"""Ratio of the speed along the line of sight that is allowed, for a joint or the body, to its
+speed across: a person who walks towards the camera hardly moves across. With a smaller ratio
+synthetic people who walk so lag; with a larger one standing people tremble."""
 DRIFT_M: Final = 0.004
-"""How far a distance drifts unseen in a second, standard deviation of a random walk."""
+"""Standard deviation of a distance's unseen drift in a second (random walk)."""
 SURPRISE: Final = 3.0
-"""Standard deviations off the prediction up to which a distance is noise: beyond, it changed."""
+"""Standard deviations from the prediction up to which a distance is noise; beyond, it changed."""
 ALL: Final = len(JOINT_NAMES)
 NOISE: Final = COMMON_M**2 + OWN_M**2 * np.eye(ALL)
 """(15, 15) m^2, covariance of the proposed distances."""
 
 
 class Memory(NamedTuple):
-    """What is remembered of the instant before."""
+    """Memory of the instant before."""
 
     rays: NDArray[np.float64]
-    """(15, 3) smooth lines of sight from the camera to each joint."""
+    """(15, 3) smoothed lines of sight from the camera to each joint."""
     range_m: Vector
-    """(15,) how far away each is."""
+    """(15,) distance of each joint."""
     P: NDArray[np.float64]
-    """(15, 15) m^2, covariance of the ranges."""
+    """(15, 15) m^2, covariance of the distances."""
 
 
 def step(
     memory: Memory | None, eye_m: Vector, joints_m: NDArray[np.float64], dt_s: float
 ) -> tuple[Memory, NDArray[np.float64]]:
-    """One instant: joints moved along their lines of sight, to where they are most probably.
+    """One instant: joints moved along their lines of sight to their most probable distances.
 
-    A picture says where joints are in it. How far away they are is proposed anew at each instant,
-    and trembles, the whole body by a centimetre, while a person stands still. What does not move
-    in the picture hardly comes nearer: a distance may change as far as its joint, or all of them on
-    the average, move across the line of sight, times DEEPER. What is far off nevertheless is
-    believed: an arm may be stretched straight towards the camera.
+    A picture shows the directions of joints. Their distances are proposed anew at each instant, and
+    tremble, the whole body's by a centimetre, while a person stands still. A joint that does not
+    move in the picture hardly comes nearer: a distance may change by the motion of its joint, or
+    the mean motion of all, across the line of sight, times DEEPER. A larger deviation is believed
+    nevertheless: an arm may be stretched straight towards the camera.
 
     Args:
         memory: None at the first instant.
-        eye_m: (3,) where the camera stands.
+        eye_m: (3,) place of the camera.
         joints_m: (15, 3) as proposed.
         dt_s: Time since the instant before.
 
     Returns:
-        What is to be remembered, and the joints (15, 3).
+        The new memory, and the joints (15, 3).
     """
     off_m = joints_m - eye_m
     range_m = np.linalg.norm(off_m, axis=1)

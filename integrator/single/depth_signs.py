@@ -1,4 +1,4 @@
-"""Which way segments lean and the body faces: what one view cannot measure (T21, T22)."""
+"""The lean of segments and the facing, which one view cannot measure (T21, T22)."""
 
 import math
 from collections.abc import Mapping
@@ -14,52 +14,53 @@ from integrator.single.lifting import StickPicture, depths_m, yaw_of
 from integrator.single.orientation import Bearing, faced
 
 CHAINS: Final = np.array([(stick_body.TORSO, stick_body.HEAD), *stick_body.CHAINS])
-"""Torso and head, arms, legs: of LIMBS, what hangs on what. Signs are chosen for two together."""
+"""Chains in LIMBS: torso and head, arms, legs. Signs are chosen for the two segments of a chain
+together."""
 WAYS: Final = np.array([[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]])
-"""Signs of a chain's two segments."""
+"""Possible signs of a chain's two segments."""
 
 SOFTNESS: Final = 0.25
-"""Costs that differ by this leave odds of e to 1."""
+"""Cost difference that means odds of e to 1."""
 MOTION: Final = 2.0
-"""What a segment costs whose direction is 1 (60 degrees) off where its motion leads."""
+"""Cost of a segment whose direction is 1 (60 degrees) off the one that its motion predicts."""
 MOMENTUM: Final = 0.8
-"""How much of its last turn a segment is expected to make again."""
+"""Share of a segment's last turn that is predicted to continue."""
 FORWARDS: Final = np.array([1.0, 1.0, 1.0, 1.0, -1.0, -1.0, 1.0, 1.0, 1.0, 1.0])
-"""Where segments mostly lean, of LIMBS: to the front, but lower legs to the back."""
+"""Usual lean of each of LIMBS: to the front, but lower legs to the back."""
 LEANING: Final = 0.05
-"""What it costs to lean the other way: it decides where nothing else does."""
+"""Cost of the other lean: it decides where nothing else does."""
 
 
 class Memory(NamedTuple):
-    """What is remembered of the body before."""
+    """Memory of the body before."""
 
     directions: NDArray[np.float64] | None
-    """(10, 3) of LIMBS, unit: where each segment pointed; None: nothing is known."""
+    """(10, 3) of LIMBS, unit: direction of each segment; None: unknown."""
     turning: NDArray[np.float64]
-    """(10, 3): how that had changed since the frame before."""
+    """(10, 3): its change since the frame before."""
     bearing: Bearing
 
 
 class Choice(NamedTuple):
-    """Signs and orientation, with the confidence in them."""
+    """Signs and orientation, with their confidence."""
 
     signs: Vector
     """(10,) of LIMBS, the person's own sides: 1 far end towards the camera, -1 away."""
     confidence: Vector
-    """(10,) in [0, 1]; 1 where the user said so."""
+    """(10,) in [0, 1]; 1 where the user set it."""
     orientation: Orientation
     orientation_confidence: float
     bearing: Bearing
-    """What is known of the orientation after this frame, whatever the user says."""
+    """The orientation's state after this frame, before any input of the user."""
 
 
 def init() -> Memory:
-    """Nothing is known."""
+    """The initial state."""
     return Memory(None, np.zeros((len(LIMBS), 3)), Bearing())
 
 
 def directions_of(joints_m: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Where each of LIMBS points, (10, 3), unit vectors, from joints (15, 3)."""
+    """Direction of each of LIMBS, (10, 3), unit vectors, from joints (15, 3)."""
     along = joints_m[LIMB_ENDS[:, 1]] - joints_m[LIMB_ENDS[:, 0]]
     unit: NDArray[np.float64] = along / np.maximum(np.linalg.norm(along, axis=1), 1e-9)[:, None]
     return unit
@@ -71,13 +72,13 @@ def choose(
     depth: Mapping[str, str] | None = None,
     orientation: Orientation | None = None,
 ) -> Choice:
-    """Signs and orientation: the user's where given, else the least cost of motion and limits.
+    """Signs and orientation: the user's where given, else those of least cost by motion and limits.
 
     Args:
         memory: Of the frame before.
-        picture: Of the stick body.
-        depth: The user's: names of LIMBS to `toward` or `away`.
-        orientation: The user's.
+        picture: The stick body's.
+        depth: The user's input: names of LIMBS to `toward` or `away`.
+        orientation: The user's input.
     """
     bearing = faced(memory.bearing, picture.joints_px, picture.breadth)
     facing = orientation or bearing.orientation
@@ -104,7 +105,7 @@ def remembered(memory: Memory, joints_m: NDArray[np.float64], choice: Choice) ->
     Args:
         memory: Before it.
         joints_m: (15, 3), as lifted.
-        choice: What was chosen for it.
+        choice: The choice for that frame.
     """
     bearing = choice.bearing._replace(
         orientation=choice.orientation, confidence=choice.orientation_confidence
@@ -119,9 +120,9 @@ def witnessed(
 
     Args:
         memory: Before it.
-        joints_m: (15, 3), as `Lifted` has them.
-        orientation: Which way the body faces.
-        confidence: In that.
+        joints_m: (15, 3), as in `Lifted`.
+        orientation: The facing.
+        confidence: Confidence in it.
     """
     return _next(memory, joints_m, Bearing(orientation, confidence))
 
@@ -133,7 +134,7 @@ def _next(memory: Memory, joints_m: NDArray[np.float64], bearing: Bearing) -> Me
 
 
 def _costs(memory: Memory, flat_m: Vector, deep_m: Vector, forward: Vector) -> Vector:
-    """What each of WAYS costs each of CHAINS, (4, 5)."""
+    """Cost of each of WAYS for each of CHAINS, (4, 5)."""
     size = np.maximum(np.sqrt((flat_m**2).sum(axis=1) + deep_m**2), 1e-9)[:, None]
     toward = np.concatenate([flat_m, deep_m[:, None]], axis=1) / size
     way = np.stack([toward, toward * np.array([1.0, 1.0, -1.0])])
@@ -150,8 +151,8 @@ def _costs(memory: Memory, flat_m: Vector, deep_m: Vector, forward: Vector) -> V
 
 
 def _strain(ahead: Vector, bend: Vector) -> Vector:
-    """What joints cost that bend as they do not, (4, 5): how far each upper segment points to the
-    front, and how far its lower one bends to the front from it.
+    """Cost of impossible bends, (4, 5): from how far each upper segment points to the front, and
+    how far its lower one bends to the front from it.
 
     People bow forwards, arms reach back by 40 degrees and elbows bend forwards, hips reach back by
     20 and knees bend backwards.
@@ -166,7 +167,7 @@ def _strain(ahead: Vector, bend: Vector) -> Vector:
 
 
 def _forbidden(depth: Mapping[str, str]) -> Vector:
-    """Infinite costs for what the user ruled out, (4, 5)."""
+    """Infinite costs for what the user excluded, (4, 5)."""
     costs = np.zeros((len(WAYS), len(CHAINS)))
     for name, said in depth.items():
         n, i = (int(at[0]) for at in np.nonzero(np.equal(CHAINS, LIMBS.index(name))))

@@ -17,9 +17,9 @@ from integrator.single.sight import Hypothesis, Sight, posed
 from integrator.single.stick_similarity import stick_similarity
 
 UNSEEN: Final = 0.25
-"""Share of its confidence that the end of a hidden segment keeps."""
+"""Factor on the confidence of a hidden segment's end."""
 TILTED_DEG: Final = 15.0
-"""A segment that leans less hardly moves with its sign."""
+"""Lean, below which a segment hardly moves with its sign."""
 
 
 def step(memory: depth_signs.Memory, sight: Sight) -> tuple[depth_signs.Memory, Hypothesis]:
@@ -27,7 +27,7 @@ def step(memory: depth_signs.Memory, sight: Sight) -> tuple[depth_signs.Memory, 
 
     Args:
         memory: Of the frame before.
-        sight: Its person has a stick body.
+        sight: A view whose person has a stick body.
     """
     fit, annotations = sight.person.stick, sight.annotations
     assert fit is not None
@@ -55,9 +55,9 @@ def step(memory: depth_signs.Memory, sight: Sight) -> tuple[depth_signs.Memory, 
 def in_world(
     sight: Sight, pixels: NDArray[np.float64], lifted: Lifted, px_per_m: float
 ) -> NDArray[np.float64]:
-    """The joints in the world, (15, 3) metres, at the depth at which the person is so tall.
+    """The joints in the world, (15, 3) metres, at the depth that gives the person's stature.
 
-    The thesis prints scaled orthography (T19): every joint's ray is met at one depth.
+    The thesis prints scaled orthography (T19): every joint's ray is cut at one depth.
     """
     camera = sight.camera
     K = np.array(camera.K)
@@ -73,7 +73,8 @@ def in_world(
 
 
 def _confidence(fit: Fit, lifted: Lifted, choice: depth_signs.Choice) -> Vector:
-    """Of each joint: of the fit, of what is hidden, and of the sign where it matters."""
+    """Confidence of each joint: from the fit, from hidden segments, and from the sign where it
+    matters."""
     found = np.full(len(JOINT_NAMES), fit.score)
     for limb, (near, far) in enumerate(LIMB_ENDS):
         own = UNSEEN if fit.hidden[limb] else 1.0

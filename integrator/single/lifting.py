@@ -1,4 +1,4 @@
-"""From the picture's plane into the room: depth of every segment by scaled orthography (3.1.5)."""
+"""From the picture's plane into space: depth of every segment by scaled orthography (3.1.5)."""
 
 import math
 from typing import Final, NamedTuple
@@ -14,19 +14,19 @@ _AT: Final = {name: i for i, name in enumerate(JOINT_NAMES)}
 
 
 class StickPicture(NamedTuple):
-    """A fitted stick body, and the body that it is taken to be the picture of."""
+    """A fitted stick body, and the proportions of the body that it shows."""
 
     joints_px: NDArray[np.float64]
     """(15, 2), JOINT_NAMES, r on the left of the picture (T10)."""
     breadth: float
-    """How much of its breadth the trunk shows."""
+    """Visible share of the trunk's breadth."""
     lengths_m: Vector
     """(13,) of LIMBS, then half the shoulders, their drop, half the hips."""
     px_per_m: float
-    """One scale for all parts, from the height standing (T20)."""
+    """One scale for all parts, from the standing height (T20)."""
 
     def of_own_sides(self, orientation: Orientation) -> NDArray[np.float64]:
-        """The joints under the person's own sides, which the orientation settles (3.1.5)."""
+        """The joints with the person's own sides, which the orientation settles (3.1.5)."""
         backward = orientation.startswith("backward")
         return self.joints_px[OTHER_SIDE] if backward else self.joints_px.copy()
 
@@ -35,18 +35,18 @@ class Lifted(NamedTuple):
     """A body in space: x to the right of the picture, y up, z to the camera; metres."""
 
     joints_m: NDArray[np.float64]
-    """(15, 3), JOINT_NAMES, sides as the person's own; z is 0 at the pelvis, x and y are 0 at the
+    """(15, 3), JOINT_NAMES, the person's own sides; z is 0 at the pelvis, x and y are 0 at the
     corner of the picture."""
     tilt_deg: Vector
-    """(10,): out of the picture's plane, positive towards the camera."""
+    """(10,): angle out of the picture's plane, positive towards the camera."""
     error_deg: Vector
-    """(10,): by how much the tilt changes where the segment is a pixel longer or shorter."""
+    """(10,): change of that angle with a pixel of the segment's length."""
     yaw_deg: float
     """0 faces the camera, 90 the right of the picture."""
 
 
 def depths_m(lengths_m: Vector, lengths_px: Vector, px_per_m: float) -> Vector:
-    """How far apart in depth the ends of segments are, without the sign (n,).
+    """Depth difference of the ends of segments, without the sign (n,).
 
     Source: Demir 2006, eq. (2.2), its radicand not below 0 (T19, M22).
     """
@@ -55,7 +55,8 @@ def depths_m(lengths_m: Vector, lengths_px: Vector, px_per_m: float) -> Vector:
 
 
 def tilt_errors_deg(lengths_m: Vector, lengths_px: Vector, px_per_m: float) -> Vector:
-    """What a pixel of length more or less does to the angle out of the plane, (n,): the larger."""
+    """Change of the angle out of the plane with a pixel more or less of length, (n,): the
+    larger."""
     longest_px = lengths_m * px_per_m
 
     def tilt_deg(length_px: Vector) -> Vector:
@@ -69,11 +70,11 @@ def tilt_errors_deg(lengths_m: Vector, lengths_px: Vector, px_per_m: float) -> V
 
 
 def yaw_of(orientation: Orientation, breadth: float) -> float:
-    """How far the body is turned about the vertical, degrees: 0 to the camera, 90 to the right.
+    """Turn of the body about the vertical, degrees: 0 to the camera, 90 to the right.
 
     Args:
         orientation: One of the six.
-        breadth: How much of its breadth the trunk shows: its horizontal foreshortening (T22).
+        breadth: Visible share of the trunk's breadth: its horizontal foreshortening (T22).
     """
     if orientation in ("left", "right"):
         return 90.0 if orientation == "right" else -90.0
@@ -84,12 +85,12 @@ def yaw_of(orientation: Orientation, breadth: float) -> float:
 
 
 def lift(picture: StickPicture, signs: Vector, orientation: Orientation) -> Lifted:
-    """The body in space that a fitted stick body is the picture of.
+    """The body in space whose picture is a fitted stick body.
 
     Args:
-        picture: Of the stick body.
+        picture: The stick body's.
         signs: (10,) of LIMBS with the person's own sides, 1: far end nearer to the camera, -1.
-        orientation: Which way the person faces.
+        orientation: The person's facing.
     """
     pixels = picture.of_own_sides(orientation)
     limbs_m = picture.lengths_m[: len(LIMBS)]
@@ -106,7 +107,7 @@ def lift(picture: StickPicture, signs: Vector, orientation: Orientation) -> Lift
 
 
 def _before_m(lengths_m: Vector, depth_m: Vector, yaw_deg: float) -> Vector:
-    """How far each joint is before the pelvis, towards the camera, (15,)."""
+    """Distance of each joint in front of the pelvis, towards the camera, (15,)."""
     z_m = np.zeros(len(JOINT_NAMES))
     leftwards = -math.sin(math.radians(yaw_deg))
     for limb, (near, far) in enumerate(LIMB_ENDS):

@@ -1,4 +1,5 @@
-"""The body that one silhouette proposes, or what has the same one and agrees with all else."""
+"""The body proposed from a single silhouette, or one with the same silhouette that fits all
+else."""
 
 from typing import Final, NamedTuple
 
@@ -25,16 +26,16 @@ CROWN: Final = 0.155
 people whose arms are not raised (docs/measurements.md)."""
 
 BESIDE: Final = 1 / 3
-"""Exponent that turns the confidence in a joint of one silhouette into that of its place in the
-picture: chosen on two performers (docs/measurements.md)."""
+"""Exponent from the confidence in a joint of one silhouette to that of its place in the picture:
+chosen on two performers (docs/measurements.md)."""
 
 
 class Proposed(NamedTuple):
-    """What a silhouette proposes, and what is remembered of it."""
+    """A proposal from one silhouette, and its memory."""
 
     found: Hypothesis
     agrees: bool
-    """It faces the side that the user names, if they name one."""
+    """It faces the side that the user named, if any."""
     memory: pose_proposal.Memory
     front: Front | None
     landmarks: landmark_fusion.Memory | None
@@ -42,26 +43,26 @@ class Proposed(NamedTuple):
 
 
 class Before(NamedTuple):
-    """What is remembered of the instant before."""
+    """Memory of the instant before."""
 
     memory: pose_proposal.Memory | None
-    """Of the network; None at the first."""
+    """The network's; None at the first."""
     front: Front | None
     """Of front and back; None: the network remembers it."""
     landmarks: landmark_fusion.Memory | None
     depth: calm_depth.Memory | None
-    """Of how far away joints are; None at the first."""
+    """Of the joints' distances; None at the first."""
 
 
 def step(before: Before, sight: Sight) -> Proposed:
-    """One instant of one view: what the outline proposes, and what the picture shows with it.
+    """One instant of one view: the silhouette's proposal, fused with what the picture shows.
 
-    Which way somebody faces who leans far or lies is not asked: front and back are not there what
-    they are of who stands.
+    The facing of a person who leans far or lies is not tested: front and back differ there from a
+    standing person's.
 
     Args:
-        before: What is remembered.
-        sight: What is seen.
+        before: The memory.
+        sight: The view.
     """
     front = before.front
     camera, annotations = sight.camera, sight.annotations
@@ -99,7 +100,7 @@ def step(before: Before, sight: Sight) -> Proposed:
 
 
 def _shown(person: Observation) -> tuple[float, float] | None:
-    """Which way landmarks have a whole person face, and how surely; None where they do not."""
+    """Facing of a whole person by landmarks, and its confidence; None where they show none."""
     shown = person.landmarks
     return None if shown is None or person.cut else (shown.facing_deg, shown.facing_confidence)
 
@@ -107,14 +108,14 @@ def _shown(person: Observation) -> tuple[float, float] | None:
 def _with_landmarks(
     before: Before, sight: Sight, joints_m: NDArray[np.float64], confidence: Vector
 ) -> tuple[NDArray[np.float64], Vector, landmark_fusion.Memory | None]:
-    """Joints (15, 3) and the confidence in them, with what the picture shows.
+    """Joints (15, 3) and their confidence, fused with what the picture shows.
 
-    It says nothing of their depth, which is what one outline mostly gets wrong.
+    The picture does not show their depth, which is the main error of one silhouette.
     """
     rays = rays_of(undistorted_rig(sight.rig), sight.seen)
     if rays is None:
         return joints_m, confidence, before.landmarks
-    if before.front is not None:  # which has heard already which way the person faces
+    if before.front is not None:  # the facing was taken into account already
         rays = rays._replace(facing_confidence=(0.0, 0.0))
     at = pose_proposal.AT
     beside = confidence[at] ** BESIDE
@@ -124,7 +125,7 @@ def _with_landmarks(
 
 
 def _with_trunk(sight: Sight, found: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The 15 joints of 12 that are proposed, neck and crown in line with the trunk."""
+    """The 15 joints from the 12 proposed ones, neck and crown in line with the trunk."""
     joints_m = np.empty((len(JOINT_NAMES), 3))
     joints_m[pose_proposal.AT] = found
     joints_m[PELVIS] = found[pose_network.HIPS].mean(axis=0)
@@ -138,7 +139,7 @@ def _with_trunk(sight: Sight, found: NDArray[np.float64]) -> NDArray[np.float64]
 def _at_depth(
     camera: Camera, pixel: tuple[float, float], place_m: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """What a pixel shows at the depth of a place."""
+    """The world point of a pixel at the depth of a place."""
     forward = np.array(camera.R)[2]
     depth_m = float(forward @ (place_m - centre(camera)))
     along = ray(camera, pixel)

@@ -1,4 +1,4 @@
-"""Which way a body faces that one camera sees: profile or front, left or right (T22)."""
+"""Facing of a body in a single view: profile or front, left or right (T22)."""
 
 import math
 from typing import Final, NamedTuple
@@ -10,17 +10,17 @@ from common.body.body import JOINT_NAMES
 from common.notes.notes import Orientation
 
 PROFILE, FRONTAL = 0.65, 0.8
-"""Below and above this mean breadth a body is taken to be in profile, or not."""
+"""Mean breadths below which a body counts as in profile, and above which not."""
 INERTIA: Final = 0.85
-"""How much of the mean breadth a frame keeps: half of it is new after four frames."""
+"""Weight of the mean breadth in its next value: half is replaced after four frames."""
 FADING: Final = 0.95
-"""How much of the evidence for left and right a frame keeps."""
+"""Weight of the evidence for left and right in its next value."""
 KNEES, ELBOWS, WALKING = 1.0, 0.5, 20.0
-"""What a bend of 90 degrees, and a step of a stature, say of the side that is faced."""
+"""Evidence for the faced side from a bend of 90 degrees, and from a step of a stature."""
 CONFIDENT_AT: Final = 2.0
-"""Evidence at which the odds of the side are e to 1."""
+"""Evidence that means odds of e to 1."""
 UNKNOWN_FRONT: Final = 0.7
-"""Confidence that somebody who is not in profile faces the camera: filmed people mostly do."""
+"""Confidence that a person who is not in profile faces the camera: recorded people mostly do."""
 
 _AT: Final = {name: i for i, name in enumerate(JOINT_NAMES)}
 _PELVIS, _NECK = _AT["pelvis"], _AT["neck"]
@@ -29,13 +29,13 @@ _ELBOWS: Final = [[_AT[f"{s}_{j}"] for j in ("shoulder", "elbow", "wrist")] for 
 
 
 class Bearing(NamedTuple):
-    """What is known of the way a body faces."""
+    """State of a body's facing."""
 
     orientation: Orientation = "forward_right"
     confidence: float = UNKNOWN_FRONT
-    """In that, in [0, 1]."""
+    """Confidence in it, in [0, 1]."""
     breadth: float | None = None
-    """Mean of the breadth that the trunk showed; None: never seen."""
+    """Mean of the trunk's visible breadth; None: never seen."""
     to_right: float = 0.0
     """Evidence for facing the right of the picture; negative: for the left."""
     at: tuple[float, float] | None = None
@@ -43,12 +43,12 @@ class Bearing(NamedTuple):
 
 
 def faced(bearing: Bearing, joints_px: NDArray[np.float64], breadth: float) -> Bearing:
-    """What is known after one more frame.
+    """The state after one more frame.
 
     Args:
         bearing: Before it.
         joints_px: (15, 2), JOINT_NAMES, as fitted.
-        breadth: How much of its breadth the trunk shows.
+        breadth: Visible share of the trunk's breadth.
     """
     trunk_px = float(np.linalg.norm(joints_px[_NECK] - joints_px[_PELVIS]))
     at = (float(joints_px[_PELVIS, 0]), max(trunk_px, 1.0))
@@ -70,7 +70,7 @@ def faced(bearing: Bearing, joints_px: NDArray[np.float64], breadth: float) -> B
 
 
 def _bends(joints_px: NDArray[np.float64]) -> float:
-    """What knees and elbows say: knees bend backwards, elbows forwards."""
+    """Evidence from knees and elbows: knees bend backwards, elbows forwards."""
     said = 0.0
     for chains, weight in ((_KNEES, -KNEES), (_ELBOWS, ELBOWS)):
         for chain in chains:

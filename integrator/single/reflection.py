@@ -1,4 +1,5 @@
-"""What else has the same outline: the body seen from behind, a limb that leans the other way."""
+"""Other bodies with the same silhouette: seen from behind, or with a limb that leans the other
+way."""
 
 import math
 from collections.abc import Mapping
@@ -15,26 +16,26 @@ from integrator.landmarks.landmark_rays import AT
 
 Joints = NDArray[np.float64]
 SIDEWAYS_DEG: Final = 20.0
-"""Somebody who is turned so near to a right angle is seen from the side."""
+"""Angle from a right angle, degrees, up to which a person counts as seen from the side."""
 ANEW_HZ, ANEW_ASIDE_HZ = 0.05, 5.0
-"""How often a second it is decided anew which way somebody faces who is seen from the front or the
-back, and who is seen from the side: people turn through their side."""
+"""Rate at which front or back is decided again, Hz: for a person seen from front or back, and
+for one seen from the side, as people turn through their side."""
 SHOWN_HZ: Final = 9.0
-"""How many looks that know nothing of each other a second of pictures is worth. Of made-up people
-in free motion proposals have 4.9 % the wrong way about, this makes it 3.0, a sixth of it 2.8 and
-half of it 3.1: filmed people wear what no network has seen."""
+"""Number of independent observations per second of pictures. Of synthetic people in free motion
+4.9 % of the proposals have front for back; this value leaves 3.0 %, a sixth of it 2.8 and half
+of it 3.1: recorded people wear clothes that the training data lack."""
 CERTAIN: Final = 20.0
-"""Log odds that no stretch of time tells more than."""
+"""Bound of the log odds from any stretch of time."""
 PROPOSED_HZ: Final = 1.0
-"""Log odds a second that proposals tell."""
+"""Log odds per second from proposals."""
 SUREST: Final = 0.97
-"""No picture is believed more."""
+"""Bound of a picture's confidence."""
 FACES: Final = 0.8
-"""Confidence of a facing from which a picture distinguishes left from right: more than 90 degrees
-off are 0.05 % of synthetic people's in free motion, none of two performers'
+"""Confidence of a facing from which a picture distinguishes left from right: more than 90
+degrees off are 0.05 % of synthetic people's in free motion, none of two performers'
 (docs/measurements.md)."""
 NEARLY_DEG: Final = 40.0
-"""How far a proposal may face beside the sector that the user named."""
+"""Tolerance of a proposal's facing outside the sector that the user named, degrees."""
 PELVIS: Final = JOINT_NAMES.index("pelvis")
 _HANGS: Final = [
     [int(LIMB_ENDS[part, 1]) for part in ((limb, limb + 2) if limb in (2, 3, 6, 7) else (limb,))]
@@ -44,19 +45,20 @@ _HANGS: Final = [
 
 
 class Front(NamedTuple):
-    """What is remembered of front and back, which one outline hardly tells (L4)."""
+    """Memory of front and back, which one silhouette hardly shows (L4)."""
 
     away: float = 0.45
-    """How probably the person faces away from the camera: filmed people mostly do not at first."""
+    """Probability that the person faces away from the camera: recorded people mostly do not at
+    first."""
 
 
 def yaw_deg(camera: Camera, joints_m: Joints) -> float:
-    """Which way the lines across shoulders and hips face: 0 the camera, 90 the picture's right."""
+    """Direction of the lines across shoulders and hips: 0 the camera, 90 the picture's right."""
     return front_back_flip.yaw_deg(arrays_of(camera).R, joints_m[AT])
 
 
 def faces(yaw: float) -> Orientation:
-    """Which of the six ways that is (T22)."""
+    """One of the six orientations for a direction (T22)."""
     side: Literal["left", "right"] = "right" if yaw >= 0 else "left"
     if _is_aside(yaw):
         return side
@@ -70,18 +72,18 @@ def front_of(
     named: Orientation | None,
     dt_s: float,
 ) -> tuple[Front, bool]:
-    """What is remembered now, and whether a proposal is to be seen from behind for it.
+    """The new memory, and whether a proposal must be flipped.
 
-    A hidden Markov model of two states, which people change through their side, where the outline
-    is theirs alone. The picture says which it is, by faces and feet, and proposals do a little.
+    A hidden Markov model of two states, between which people change through their side, where the
+    silhouette is unambiguous. The picture's faces and feet are the main evidence, proposals add a
+    little.
 
     Args:
         before: At the frame before.
         yaw: Of the proposal, degrees.
-        shown: Which way the picture has the person face, degrees, and how surely; None: it does
-            not tell.
-        named: The user's word, which settles it.
-        dt_s: Time since then.
+        shown: Facing in the picture, degrees, and its confidence; None: unknown.
+        named: The user's input, which settles it.
+        dt_s: Time since the frame before.
     """
     aside = _is_aside(yaw)
     if named is not None:
@@ -99,20 +101,20 @@ def front_of(
 
 
 def as_known(before: Front, yaw: float) -> Front:
-    """What is remembered of front and back from where another camera stands: as surely as before,
-    and less where the person is seen from the side.
+    """The memory of front and back, converted to another camera: as sure as before, and less where
+    the person is seen from the side.
 
     Args:
-        before: By the view that was alone until now.
-        yaw: By this camera, of the body that it had, degrees.
+        before: Of the view that was alone until now.
+        yaw: In this camera, of the previous body, degrees.
     """
     sure = abs(before.away - 0.5)
     return Front(0.5 - sure * math.cos(math.radians(yaw)))
 
 
 def as_shown(camera: Camera, joints_m: Joints, shown: tuple[float, float] | None) -> Joints:
-    """The body, as far before the pelvis as it was behind it where it faces the left of the picture
-    for the right, or the right for the left: a profile has nearly the outline of the other.
+    """The body mirrored in depth about the pelvis, where it faces left in the picture instead of
+    right, or right instead of left: both profiles have nearly the same silhouette.
 
     Args:
         camera: The view's.
@@ -133,7 +135,7 @@ def _is_aside(yaw: float) -> bool:
 
 
 def agrees(yaw: float, named: Orientation) -> bool:
-    """Whether somebody who is turned so can be who the user says faces that way."""
+    """Whether a yaw is possible for the orientation that the user named."""
     middle = {"forward": 35.0, "left": 90.0, "right": 90.0, "backward": 145.0}
     wide = SIDEWAYS_DEG if named in ("left", "right") else 35.0
     side = 1.0 if named.endswith("right") else -1.0
@@ -142,17 +144,17 @@ def agrees(yaw: float, named: Orientation) -> bool:
 
 
 def seen_from_behind(camera: Camera, joints_m: Joints) -> Joints:
-    """The body with the same outline that faces the other way, front for back.
+    """The body with the same silhouette that faces the other way, front for back.
 
-    Each joint stays on its ray, as far before the pelvis as it was behind it, and sides change.
+    Each joint stays on its ray and is mirrored in depth about the pelvis; sides are exchanged.
     """
     depth = _depths(camera, joints_m)
     return _at_depths(camera, joints_m, 2 * depth[PELVIS] - depth)[OTHER_SIDE]
 
 
 def leaning(camera: Camera, joints_m: Joints, depth: Mapping[str, str]) -> Joints:
-    """The body whose segments lean as annotated, toward the camera or away, none by more than
-    before.
+    """The body whose segments lean as annotated, toward the camera or away, each by the same angle
+    as before.
 
     Args:
         camera: The view's.
@@ -169,7 +171,7 @@ def leaning(camera: Camera, joints_m: Joints, depth: Mapping[str, str]) -> Joint
 
 
 def mirrored(camera: Camera, joints_m: Joints, limb: int) -> Joints:
-    """The body one of whose LIMBS leans as far the other way."""
+    """The body with one of LIMBS mirrored in depth."""
     depths_m = _depths(camera, joints_m)
     near, far = LIMB_ENDS[limb]
     depths_m[_HANGS[limb]] -= 2 * (depths_m[far] - depths_m[near])
@@ -177,7 +179,7 @@ def mirrored(camera: Camera, joints_m: Joints, limb: int) -> Joints:
 
 
 def as_deep(camera: Camera, joints_m: Joints, other_m: Joints) -> Joints:
-    """The joints where the picture has them, as far away as another body's are."""
+    """The joints on the picture's rays, at another body's distances."""
     return _at_depths(camera, joints_m, _depths(camera, other_m))
 
 

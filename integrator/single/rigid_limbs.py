@@ -1,4 +1,5 @@
-"""Limbs that one camera sees, given their lengths: in depth first, which it tells least (3.1.5)."""
+"""Limbs in a single view, adjusted to their lengths: mainly in depth, the least certain
+direction (3.1.5)."""
 
 from itertools import chain, pairwise
 from typing import Final
@@ -14,9 +15,9 @@ the least error in the world on two performers; in the picture all improve
 (docs/measurements.md)."""
 HALVINGS: Final = 40
 LEAST: Final = 1e-6
-"""Share of a rigid limb that is added to one, whose ends may have been found at one place."""
+"""Share of a rigid limb that is added to a limb whose ends may coincide."""
 MOST: Final = 1e3
-"""No limb is more than so many times as long as it should be."""
+"""Largest length of a limb, over its known length."""
 _LIMBS: Final = tuple(
     tuple(JOINT_NAMES.index(f"{side}_{joint}") for joint in limb)
     for limb in (("shoulder", "elbow", "wrist"), ("hip", "knee", "ankle"))
@@ -27,11 +28,11 @@ _LIMBS: Final = tuple(
 def with_lengths(
     joints_m: NDArray[np.float64], rigid_m: NDArray[np.float64], centre_m: Vector
 ) -> NDArray[np.float64]:
-    """A rigid body's joints, (n, 15, 3), whose arms and legs stay near where the camera saw them.
+    """The joints, (n, 15, 3), of a body with rigid arms and legs that stay near the observed ones.
 
     Args:
-        joints_m: (n, 15, 3) as they were found.
-        rigid_m: (n, 15, 3) of the body whose limbs have their lengths, and whose trunk is kept.
+        joints_m: (n, 15, 3) observed.
+        rigid_m: (n, 15, 3) of the body whose limbs have their lengths; its trunk is kept.
         centre_m: (3,) the camera's place.
     """
     found = rigid_m.copy()
@@ -48,15 +49,15 @@ def with_lengths(
 def _of_length(
     limbs_m: NDArray[np.float64], long_m: NDArray[np.float64], sights: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """The likeliest limbs (n, 3) of known lengths, of what is found of them.
+    """The most probable limbs (n, 3) of known lengths, given the observed ones.
 
-    Where a joint's variance is v, and a multiplier k of Lagrange is given, what is found shrinks to
-    1 / (1 + k v) of it; the length falls with k, whose place is found by halving.
+    For a joint with variance v and a Lagrange multiplier k, the observed limb shrinks by 1 / (1 + k
+    v); the length falls with k, which is found by bisection.
 
     Args:
         limbs_m: (n, 3)
         long_m: (n, 1)
-        sights: (n, 3) unit length, of the far joints.
+        sights: (n, 3) directions to the far joints, unit length.
     """
     depth_m = (limbs_m * sights).sum(axis=1, keepdims=True) * sights
     across_m, variance = limbs_m - depth_m, DEPTH_TIMES**2

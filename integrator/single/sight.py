@@ -1,4 +1,4 @@
-"""What one view alone shows of a body at an instant, and the body that it may be."""
+"""One view of a body at an instant, and candidate bodies for it."""
 
 from collections.abc import Mapping
 from typing import Final, NamedTuple
@@ -22,7 +22,7 @@ TWELVE: Final = [JOINT_NAMES.index(name) for name in PLACES]
 
 
 class Annotations(NamedTuple):
-    """What the user says of a frame (T21, T22)."""
+    """The user's inputs for a frame (T21, T22)."""
 
     orientation: Orientation | None = None
     depth: Mapping[str, str] = {}
@@ -32,15 +32,15 @@ class Annotations(NamedTuple):
 
 
 class Sight(NamedTuple):
-    """A person as one camera sees them, and what that is held against."""
+    """One camera's view of a person, and its context."""
 
     method: Method
     place: int
-    """0 or 1: of its camera in the rig."""
+    """0 or 1: index of its camera in the rig."""
     rig: Rig
-    """Two cameras, at the working size: the other one tells the network its axes."""
+    """Two cameras, at the working size: the other one defines the network's axes."""
     person: Observation
-    """As without distortion, but its stick body, which is as the picture has it."""
+    """Without distortion, except for its stick body, which is as in the picture."""
     man: Stickman
     """Proportions of the stick body."""
     bdp: Bdp
@@ -49,37 +49,37 @@ class Sight(NamedTuple):
     dt_s: float
     annotations: Annotations
     number: ViewerNumber = 1
-    """Of its camera in the run's rig."""
+    """Index of its camera in the run's rig."""
 
     @property
     def camera(self) -> Camera:
-        """That took the picture."""
+        """The camera of the picture."""
         return self.rig.cameras[self.place]
 
     @property
     def seen(self) -> TwoSeen:
-        """The person in the place of their camera; the only camera of a rig is its first, which
-        proposals look at from the front."""
+        """The person at the index of their camera; the only camera of a rig counts as its first,
+        and proposals see its person from the front."""
         first, second = self.rig.cameras
         return (self.person, None) if self.place == 0 or first == second else (None, self.person)
 
     @property
     def stature_m(self) -> float:
-        """Of the person."""
+        """Silhouette of the person."""
         return stature(self.bdp)
 
 
 class Hypothesis(NamedTuple):
-    """A body that one silhouette may show."""
+    """A candidate body for one silhouette."""
 
     joints_m: NDArray[np.float64]
     """(15, 3) world."""
     pose: Vector
-    """(25,)"""
+    """(25,) pose."""
     score: float
     """S of its parts in the picture."""
     confidence: Vector
-    """(15,)"""
+    """(15,) confidence."""
     lifting: Lifting
 
 

@@ -1,4 +1,4 @@
-"""One view alone: the body that it proposes, or its stick body lifted (thesis 3.1.5)."""
+"""A single view: its proposed body, or its lifted stick body (thesis 3.1.5)."""
 
 from typing import Final, NamedTuple
 
@@ -15,16 +15,16 @@ from integrator.single.reflection import Front
 from integrator.single.sight import Hypothesis, Sight
 
 GOOD: Final = 0.7
-"""A proposed body whose S is higher needs no stick body beside it."""
+"""S above which a proposed body needs no stick body beside it."""
 SURELY: Final = 1.15
-"""The lifted body goes before the proposed one where its S is higher by this factor."""
+"""Factor by which the lifted body's S must exceed the proposed one's to be preferred."""
 
 
 class Alone(NamedTuple):
-    """What one view alone decided, and remembers for its next instant."""
+    """Decisions of a single view, kept for its next instant."""
 
     number: ViewerNumber
-    """Which view that is."""
+    """Index of the view."""
     score: float
     """S of the body in its picture."""
     lifting: Lifting
@@ -32,11 +32,11 @@ class Alone(NamedTuple):
     """Front or back; None where the network's own memory has it from both views."""
     signs: depth_signs.Memory
     landmarks: landmark_fusion.Memory | None
-    """What is remembered of the landmarks."""
+    """Memory of the landmarks."""
     stick: bool
-    """A stick body is asked for at the next instant: what is proposed fits badly."""
+    """True: a stick body is requested for the next instant, because the proposal fits badly."""
     depth: calm_depth.Memory | None = None
-    """What is remembered of how far away joints are."""
+    """Memory of the joints' distances."""
 
 
 class Found(NamedTuple):
@@ -48,13 +48,13 @@ class Found(NamedTuple):
 
 
 def begun(sight: Sight, joints_m: NDArray[np.float64] | None, other: Alone | None = None) -> Alone:
-    """What one view knows that was not alone before: which way both views, or the other one, had
-    the body (T22).
+    """The knowledge of a view that has just become the only one: the facing by both views, or by
+    the other one (T22).
 
     Args:
         sight: Of the first instant alone.
-        joints_m: (15, 3) of the instant before; None: nothing is known.
-        other: What the other view knew, where that was alone at the instant before.
+        joints_m: (15, 3) of the instant before; None: unknown.
+        other: The other view's memory, where that was alone at the instant before.
     """
     nothing, signs = Lifting("", 1.0, ()), depth_signs.init()
     if joints_m is None:
@@ -68,12 +68,12 @@ def begun(sight: Sight, joints_m: NDArray[np.float64] | None, other: Alone | Non
 
 
 def step(memory: Memory | None, alone: Alone, sight: Sight) -> Found:
-    """One frame with somebody: a lifted body competes with the proposed one, by S.
+    """One frame with a person: a lifted body competes with the proposed one, by S.
 
     Args:
-        memory: Of the network; None at the first.
+        memory: The network's; None at the first.
         alone: Of the instant before.
-        sight: What is seen.
+        sight: The view.
     """
     if sight.method.stick_lifting:
         signs, lifted = lifted_stick.step(alone.signs, sight)
@@ -99,7 +99,8 @@ def _found(body: Hypothesis, memory: Memory | None, alone: Alone) -> Found:
 
 
 def _off_px(sight: Sight, body: Hypothesis) -> float:
-    """How far a body is from what is shown, its surest joints most; 0 where nothing is."""
+    """Distance of a body from the observed joints, weighted by confidence; 0 where there are
+    none."""
     found = sight.person.landmarks
     if found is None:
         return 0.0
@@ -112,7 +113,7 @@ def _off_px(sight: Sight, body: Hypothesis) -> float:
 def _witnessed(
     sight: Sight, signs: depth_signs.Memory, joints_m: NDArray[np.float64], confidence: float = 1.0
 ) -> depth_signs.Memory:
-    """Where segments point and the body faces, for the frames whose outline needs a stick body."""
+    """Direction of segments and facing, for the frames whose silhouette needs a stick body."""
     seen_m = joints_m @ arrays_of(sight.camera).R.T * TOWARDS
     facing = reflection.faces(reflection.yaw_deg(sight.camera, joints_m))
     return depth_signs.witnessed(signs, seen_m, facing, confidence)

@@ -1,4 +1,5 @@
-"""S of a body whose joints are drawn as the stick body is, clothed as thickly as fits best (P9)."""
+"""S of a body whose joints are drawn as a stick body, with the best-fitting thickness of clothes
+(P9)."""
 
 import math
 from typing import Final, NamedTuple
@@ -19,7 +20,7 @@ from integrator.single.sight import Sight
 
 PELVIS: Final = JOINT_NAMES.index("pelvis")
 GIRTHS: Final = (1.0, 1.15, 1.3, 1.5)
-"""How thick clothed limbs may be over those of the proportions."""
+"""Thickness of clothed limbs over that of the proportions; values that are tried."""
 
 _ENDS: Final = np.concatenate(
     [LIMB_ENDS]
@@ -29,27 +30,27 @@ _ENDS: Final = np.concatenate(
 
 
 class Task(NamedTuple):
-    """What is matched with what; its members are also what the compiled function reads."""
+    """The match's inputs; the compiled function reads its members."""
 
     camera: Vector
     """(VIEW,)"""
     parts: Vector
     depth: float
-    """The Stickman's."""
+    """The Stickman's arrays."""
     broad_px: float
-    """The line of the shoulders of somebody who faces the camera."""
+    """The line of the shoulders of a person who faces the camera."""
     seen: Bits
     seen_px: int
     width: int
-    """The silhouette, its pixels, and the width of the picture."""
+    """The silhouette, its number of pixels, and the width of the picture."""
 
 
 def stick_similarity(sight: Sight, joints_m: NDArray[np.float64]) -> float:
-    """S of the joints and the silhouette of a sight.
+    """S of the joints and the silhouette of a view.
 
     Args:
-        sight: Of one view.
-        joints_m: (15, 3) world; they need not be where a pose's cylinders have them.
+        sight: One view.
+        joints_m: (15, 3) world; they may be off the pose's cylinders.
     """
     camera, man, person = undistorted_camera(sight.camera), sight.man, sight.person
     tall_px = _tall_px(camera, sight.stature_m, joints_m)
@@ -65,14 +66,14 @@ def stick_similarity(sight: Sight, joints_m: NDArray[np.float64]) -> float:
 
 
 def _tall_px(camera: Camera, stature_m: float, joints_m: NDArray[np.float64]) -> float:
-    """How tall the body would stand in the picture where its pelvis is."""
+    """Height of the standing body in the picture at the pelvis's distance."""
     deep_m = float(arrays_of(camera).R[2] @ joints_m[PELVIS] + camera.t[2])
     return camera.K[1][1] * stature_m / max(deep_m, NEAREST_M)
 
 
 @compiled
 def _similar(task: Task, stick: Vector, joints_m: Floats) -> float:
-    """S of the body with these joints; `stick` gets the breadth that it shows."""
+    """S of the body with these joints; the visible breadth is written into `stick`."""
     ends = np.empty((12, 4))
     for row in range(12):
         for end in range(2):
