@@ -12,13 +12,14 @@ from common.bus.rate import Pace
 from common.config.settings import Settings
 from common.method import METHODS
 from common.video.clip_facts import Clip, uprights_of
-from integrator import commands, diagnostics, merge, merge_state, opening_posture
+from integrator import commands, diagnostics, merge, merge_state
 from integrator.frame_numbers import frame_times
 from integrator.handed_over import Estate
 from integrator.hearing.rig_publisher import RigPublisher
 from integrator.hearing.subscriber import Subscriber
 from integrator.integrator_warmup import warm_up
 from integrator.live_rig.live_calibration import LiveCalibration, is_by_person
+from integrator.measuring import opening_posture
 from integrator.merge_state import Start, State
 from integrator.single.sight import Annotations
 

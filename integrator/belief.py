@@ -6,9 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import OTHER_SIDE
-from common.body.observation import Landmarks, Observation
+from common.body.observation import Landmarks
 from common.bus.instant import Seen
+from common.bus.messages import Status
 from common.rig.camera import Camera, Rig, project
+from integrator.person import Following, Sighting
 from integrator.single.reflection import yaw_deg
 
 LOST_SCORE: Final = 0.35
@@ -35,6 +37,53 @@ UNTOLD_SCORE: Final = 0.45
 """Smallest S in each view where no view's landmarks are trusted: it is 0.6 in 99 % of two
 performers' frames (docs/measurements.md)."""
 
+LOST_S: Final = 1.0 / 3.0
+"""Duration without belief, seconds, after which the body is lost: five frames at 15 Hz. Until
+then it is predicted: it has a pose, with confidence 0."""
+
+
+def weighed(
+    person: Following, now: Sighting, scores: tuple[float, ...], period_s: float
+) -> Following:
+    """The person with the duration of disbelief; a body lost in both views is forgotten.
+
+    A frame in which the user placed joints is believed. Without forgetting, the network would
+    continue from its memory of a wrong body. A single view keeps its memory, which alone
+    distinguishes front from back. A body that was never believed is lost at once, as nothing shows
+    that it is a person.
+
+    Args:
+        person: Of this instant.
+        now: The views of the instant.
+        scores: S of the pose in each view.
+        period_s: Time between frames.
+    """
+    found, placed = person.found, now.annotations.joints_px
+    places_m, detections = person.places_m(found.pose), now.instant.detections
+    if placed or is_believed(places_m, now.filed_rig, detections, scores):
+        return person._replace(doubted=0, ever_confirmed=True)
+    lost = lost_frames(period_s)
+    least = lost if found.alone is not None and not person.ever_confirmed else 1
+    person = person._replace(doubted=max(least, person.doubted + 1))
+    if person.doubted % lost or found.alone is not None:
+        return person
+    return person._replace(found=found._replace(memory=None))
+
+
+def status_of(person: Following, period_s: float) -> Status:
+    """The status, from presence, the opening posture and belief: never from S alone (M25).
+
+    A person partly outside the only picture is tracked: the joints outside have confidence 0.
+    """
+    if person.doubted:
+        return "lost" if person.doubted >= lost_frames(period_s) else "predicted"
+    return "measuring" if person.body.under_way else "tracking"
+
+
+def lost_frames(period_s: float) -> int:
+    """Number of instants in a row without belief after which a body is lost."""
+    return max(1, round(LOST_S / period_s))
+
 
 def is_believed(
     joints_m: NDArray[np.float64], rig: Rig, seen: Seen, scores: tuple[float, ...]
@@ -52,11 +101,15 @@ def is_believed(
         for person, camera, score in zip(seen, rig.cameras, scores, strict=True)
         if person is not None
     ]
-    told = [(person, camera) for person, camera, _ in views if _is_trusted(person)]
+    told = [
+        (person.landmarks, camera)
+        for person, camera, _ in views
+        if person.landmarks is not None and _is_trusted(person.landmarks)
+    ]
     if max(scores) < LOST_SCORE and len(told) < 2:
         return False
     if told:
-        near = sum(_astray(joints_m, camera, person.landmarks) <= ASTRAY for person, camera in told)
+        near = sum(_astray(joints_m, camera, shown) <= ASTRAY for shown, camera in told)
         return near >= min(2, len(told)) and not _is_turned_about(joints_m, told)
     unsure = [person.landmarks for person, _, _ in views if person.landmarks is not None]
     if len(unsure) < len(views):
@@ -65,11 +118,9 @@ def is_believed(
     return somebody and min(score for _, _, score in views) >= UNTOLD_SCORE
 
 
-def _is_trusted(person: Observation) -> bool:
-    if person.landmarks is None:
-        return False
-    sure = person.landmarks.confidence
-    return _sure(person.landmarks) >= TRUSTED and sum(each > SURE for each in sure) >= LEAST
+def _is_trusted(found: Landmarks) -> bool:
+    sure = sum(each > SURE for each in found.confidence)
+    return _sure(found) >= TRUSTED and sure >= LEAST
 
 
 def _sure(found: Landmarks) -> float:
@@ -77,12 +128,11 @@ def _sure(found: Landmarks) -> float:
     return sum(found.confidence) / len(found.confidence)
 
 
-def _astray(joints_m: NDArray[np.float64], camera: Camera, found: Landmarks | None) -> float:
+def _astray(joints_m: NDArray[np.float64], camera: Camera, found: Landmarks) -> float:
     """Median distance of the sure landmarks from a body's joints, in its heights.
 
     Left and right may be exchanged: the facing is tested separately.
     """
-    assert found is not None
     joints_px, seen_px = project(camera, joints_m), np.array(found.joints_px)
     if np.isnan(joints_px).any():  # the body is behind the camera that sees the person
         return np.inf
@@ -93,15 +143,15 @@ def _astray(joints_m: NDArray[np.float64], camera: Camera, found: Landmarks | No
     return float(off_px[:, off_px.shape[1] // 2].min()) / tall_px
 
 
-def _is_turned_about(joints_m: NDArray[np.float64], told: list[tuple[Observation, Camera]]) -> bool:
+def _is_turned_about(joints_m: NDArray[np.float64], told: list[tuple[Landmarks, Camera]]) -> bool:
     """Whether all views that are sure of the facing disagree with the body's.
 
     A single view confuses front and back too often.
     """
     off_deg = [
-        _off_deg(yaw_deg(camera, joints_m), person.landmarks.facing_deg)
-        for person, camera in told
-        if person.landmarks is not None and person.landmarks.facing_confidence > FACES
+        _off_deg(yaw_deg(camera, joints_m), shown.facing_deg)
+        for shown, camera in told
+        if shown.facing_confidence > FACES
     ]
     return len(off_deg) > 1 and min(off_deg) > TURNED_DEG
 

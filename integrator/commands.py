@@ -4,8 +4,8 @@ from typing import Final
 
 from common.bus.control_messages import Answer, Command
 from common.notes.notes import ORIENTATIONS, Orientation
+from integrator.measuring.known_body import Unknown, Unmeasured
 from integrator.merge_state import State
-from integrator.opening_posture import Opening
 from integrator.single.sight import Annotations
 
 OTHERWISE: Final[dict[str, Orientation]] = {"front": "forward_right", "back": "backward_right"}
@@ -26,9 +26,10 @@ def step(
         return _unmeasured(state), said, _answer(command, True, _how_to_stand(state))
     if command.what not in OTHERWISE:
         return state, said, None
-    alone = None if state.found is None else state.found.alone
+    found = state.person.found
+    alone = None if found is None else found.alone
     if alone is None:
-        seen = "nobody is seen" if state.found is None else "both cameras see front and back"
+        seen = "nobody is seen" if found is None else "both cameras see front and back"
         return state, said, _answer(command, False, f"{seen}: this is for one camera alone")
     facing = _turned(alone.lifting.orientation, command.what)
     word = f"the person is taken to face {facing.replace('_', ' ')} from now on"
@@ -37,11 +38,15 @@ def step(
 
 def _unmeasured(state: State) -> State:
     """The state in which the body will be measured again; until then it keeps its lengths."""
-    return state._replace(opening=Opening(bdp=state.opening.bdp))
+    body = state.person.body
+    if isinstance(body, Unknown):
+        return state
+    return state._replace(person=state.person._replace(body=Unmeasured(body.bdp)))
 
 
 def _how_to_stand(state: State) -> str:
-    if state.rig is not None and (state.found is None or state.found.alone is None):
+    found = state.person.found
+    if state.rig is not None and (found is None or found.alone is None):
         return "stand upright with both arms stretched out level: the body is measured then"
     return "the body's lengths are told from its outline anew"
 

@@ -5,6 +5,7 @@ from typing import Final, NamedTuple
 from common.bus.instant import Instant
 from common.bus.messages import CameraFault, View
 from integrator import merge_state
+from integrator.measuring.known_body import Measured
 
 DOUBTED: Final = 0.5
 """Share of the joints' confidence below which a rig is reported as doubtful."""
@@ -81,7 +82,7 @@ def doubt(merged: merge_state.State) -> str:
 def warnings(state: State, merged: merge_state.State) -> list[str]:
     """All oddities, once the performance is over."""
     lines = assumed(merged)
-    if any(state.seen) and not merged.opening.measured:
+    if any(state.seen) and not isinstance(merged.person.body, Measured):
         lines.append(
             "nobody took the opening posture, upright with stretched arms, facing camera 1 and "
             "seen from the side by camera 2: the body has the thesis's proportions, unmeasured"

@@ -13,11 +13,14 @@ from common.bus.control_messages import Ended
 from common.bus.messages import ScaleSource
 from common.rig.camera import Rig
 from common.rig.upright import Shift
+from integrator.measuring.known_body import Measured, Opening, Unknown, Unmeasured
 from integrator.merge_state import State
-from integrator.opening_posture import Opening
+from integrator.person import Waiting
 
 NAME: Final = "integrator.msgpack"
 LEAVE_S: Final = 1.0
+NOWHERE_M: Final = (0.0, 0.0, 0.0)
+"""Stands for where a body was measured that was not."""
 
 log = logging.getLogger(__name__)
 
@@ -53,11 +56,11 @@ def handed_over(
 ) -> HandedOver:
     """The part of a state that is handed over, with the delay of view 2, the ended views and the
     start of the run."""
-    known = state.opening
+    known = state.person.body
     return HandedOver(
         known.bdp,
-        known.measured,
-        known.measured_at_m,
+        isinstance(known, Measured),
+        known.measured_at_m if isinstance(known, Measured) else NOWHERE_M,
         state.rig,
         state.scale_source,
         state.calibration,
@@ -71,15 +74,20 @@ def handed_over(
 
 def resumed(state: State, given: HandedOver) -> State:
     """A new state with the handed-over knowledge; poses and filters begin anew."""
-    opening = Opening(given.bdp, given.measured, given.measured_at_m) if given.bdp else Opening()
     return state._replace(
-        opening=opening,
+        person=Waiting(_body_of(given)),
         rig=given.rig,
         scale_source=given.scale_source,
         calibration=given.calibration,
         numbered=given.numbered,
         stands=MovedCameras(given.shifts, given.shifts),
     )
+
+
+def _body_of(given: HandedOver) -> Opening:
+    if given.bdp is None:
+        return Unknown()
+    return Measured(given.bdp, given.measured_at_m) if given.measured else Unmeasured(given.bdp)
 
 
 class Estate:

@@ -7,6 +7,7 @@ from common.bus.control_messages import Command, Wish
 from common.config.settings import Settings
 from common.method import DEFAULT
 from integrator import commands, merge_state
+from integrator.measuring.known_body import Measured, Unmeasured
 from integrator.single.sight import Annotations
 
 
@@ -16,17 +17,17 @@ def test_a_body_is_measured_again_and_keeps_its_lengths_until_then(
     exact(monkeypatch)
     stage = Stage()
     stage.show([opening()] * 12)
-    measured = stage.state.opening
-    assert measured.measured
+    measured = stage.state.person.body
+    assert isinstance(measured, Measured)
     state, _, answer = commands.step(stage.state, Annotations(), Command(what="measure"))
     assert answer is not None
     assert answer.well
-    assert (state.opening.measured, state.opening.bdp) == (False, measured.bdp)
+    assert state.person.body == Unmeasured(measured.bdp)
     stage.state = state
     told = stage.show([standing()] * 2)
     assert not told[-1].guide.measured, "the viewers look for the opening posture again"
     stage.show([opening()] * 12)
-    assert stage.state.opening.measured
+    assert isinstance(stage.state.person.body, Measured)
 
 
 def test_front_and_back_are_for_one_camera_alone(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -6,6 +6,7 @@ import pytest
 from staging import report as staged
 
 from calibration.gate import rig_agreement
+from common.body.proportions import thesis_bdp
 from common.bus.instant import Instant
 from common.bus.messages import Agreement, ScaleSource, View
 from common.config.part_settings import BodySettings
@@ -14,6 +15,8 @@ from common.method import DEFAULT
 from common.rig.camera import paper_rig
 from integrator import diagnostics, merge_state
 from integrator.diagnostics import DOUBTED
+from integrator.measuring.known_body import Measured, Unknown
+from integrator.person import Waiting
 
 RIG = paper_rig((160, 120), (200.0, 200.0), (4.5, 4.5))
 
@@ -33,7 +36,8 @@ def merged(calibrated: bool = True, measured: bool = True) -> merge_state.State:
     state = merge_state.init(
         RIG if calibrated else None, 1 / 15, Settings(body=BodySettings(stature_m=1.62)), DEFAULT
     )
-    return state._replace(opening=state.opening._replace(measured=measured))
+    body = Measured(thesis_bdp(1.75), (0.0, 1.0, 0.0)) if measured else Unknown()
+    return state._replace(person=Waiting(body))
 
 
 def test_a_good_performance_is_not_odd() -> None:

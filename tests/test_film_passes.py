@@ -368,12 +368,12 @@ def test_the_scale_is_told_by_whole_silhouettes_of_all_of_the_film(
     assert (len(tilts_deg) == 1) == (method is THESIS)
     assert state.rig == Rig(*SIZE, (camera, camera))
     assert (state.scale_source, state.alone) == ("assumed", True)
-    assert state.opening.bdp == thesis_bdp(1.9)
+    assert state.person.body.bdp == thesis_bdp(1.9)
     assert viewer.setup == Setup(1, None, settings, method, alone=True)
     _, state = film_passes._begun(reports, film._replace(camera=RIG.cameras[1]))
     assert len(asked) == 1
     assert state.rig == Rig(*SIZE, (RIG.cameras[1],) * 2)
-    assert (state.scale_source, state.opening.bdp) == ("calibrated", None)
+    assert (state.scale_source, state.person.body.bdp) == ("calibrated", None)
 
 
 def test_where_all_are_cut_these_tell_the_camera_and_of_nobody_the_picture() -> None:

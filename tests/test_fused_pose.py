@@ -7,15 +7,18 @@ import numpy as np
 import pytest
 from staging import PERIOD_S, PERSON, RIG, observation, silhouettes, standing
 
-from common.body.body import POSE_INDEX, YAW_DEG
+from common.body.body import POSE_INDEX, YAW_DEG, Vector
 from common.body.observation import Facing, Observation, Search
 from common.body.proportions import LOWER_LEG_HEIGHT, UPPER_LEG_HEIGHT, body_vector
 from common.config.settings import Settings
 from common.method import DEFAULT, PAPER, Method
 from integrator import merge_state
-from integrator.merge_state import Posed, State
-from integrator.opening_posture import Opening, Sample
+from integrator.measuring.known_body import Known, Measured, Sample, Unknown, Unmeasured
+from integrator.merge_state import State
 from integrator.paper import fused_pose
+from integrator.person import Following, Posed, Waiting
+from integrator.pose import smoothing
+from integrator.rig.best_pair import Two
 from integrator.rig.body_position import scales_at
 
 
@@ -31,23 +34,35 @@ def view(number: Any, vote: Facing, width_px: float, at: tuple[float, float]) ->
 FIRST, SECOND = view(1, "facade", 24.0, (85.0, 61.0)), view(2, "flank", 12.0, (78.0, 63.0))
 
 
-def state(method: Method, opening: Opening | None = None, **more: Any) -> State:
+PRIOR, MEASURED = Unmeasured(PERSON), Measured(PERSON, (0.0, 0.9, 0.0))
+
+
+def state(method: Method, known: Known = PRIOR, **more: Any) -> State:
     made = merge_state.init(RIG, PERIOD_S, Settings(), method)
-    return made._replace(opening=opening or Opening(bdp=PERSON), **more)
+    return made._replace(person=Waiting(known), **more)
+
+
+def following(made: State, pose: Vector) -> State:
+    """Somebody had a pose at the instant before."""
+    found, body = Posed(pose, ("facade", "flank")), made.person.body
+    assert not isinstance(body, Unknown)
+    return made._replace(person=Following(body, found, smoothing.init(17, PERIOD_S)))
+
+
+def posed(made: State, *seen: Observation | None, settled_at: Vector | None = None) -> Posed:
+    first, second = seen
+    assert not isinstance(made.person.body, Unknown)
+    return fused_pose.step(made, made.person.body, Two(RIG, (first, second)), settled_at)
 
 
 def faced(made: State, *seen: Observation | None) -> tuple[Facing, ...]:
-    first, second = seen
-    return fused_pose.step(made, RIG, (first, second), None).facing
+    return posed(made, *seen).facing
 
 
-MEASURED = Opening(bdp=PERSON, measured=True, measured_at_m=(0.0, 0.9, 0.0))
-
-
-@pytest.mark.parametrize("opening", [Opening(bdp=PERSON), MEASURED], ids=["prior", "measured"])
+@pytest.mark.parametrize("opening", [PRIOR, MEASURED], ids=["prior", "measured"])
 @pytest.mark.parametrize("holds", [False, True])
 def test_one_view_alone_decides_unless_both_have_measured_and_it_is_held(
-    opening: Opening, holds: bool
+    opening: Known, holds: bool
 ) -> None:
     method = msgspec.structs.replace(PAPER, held_facing=holds)
     made = state(method, opening, facing=("flank", "facade"))
@@ -61,14 +76,14 @@ def test_one_view_alone_decides_unless_both_have_measured_and_it_is_held(
 
 def test_the_place_is_where_the_navel_is_seen_and_the_trunk_is_upright() -> None:
     """Eq. (3) for the paper's rig: both lambda 200 px, both distances 4 m."""
-    found = fused_pose.step(state(PAPER), RIG, (FIRST, SECOND), None).pose
+    found = posed(state(PAPER), FIRST, SECOND).pose
     x1, z2, focal, far_m = 85.0 - 80.0, 78.0 - 80.0, 200.0, 4.0
     shared = focal * focal + x1 * z2
     assert found[0] == pytest.approx(x1 * (far_m * focal - z2 * far_m) / shared)
     assert found[2] == pytest.approx(z2 * (x1 * far_m + far_m * focal) / shared)
     assert found[POSE_INDEX["torso_y"]] == YAW_DEG[0]
     measured_at = np.array([0.3, 1.1, -0.2])
-    placed = fused_pose.step(state(PAPER), RIG, (FIRST, SECOND), measured_at).pose
+    placed = posed(state(PAPER), FIRST, SECOND, settled_at=measured_at).pose
     assert placed[:3] == pytest.approx(measured_at)
 
 
@@ -81,7 +96,7 @@ def test_widths_are_compared_at_one_distance_where_that_is_asked() -> None:
     assert scales[1] / scales[0] == pytest.approx(2.0)
     for scaled, expected in ((False, ("facade", "flank")), (True, ("flank", "facade"))):
         method = msgspec.structs.replace(PAPER, scaled_arbiter=scaled)
-        made = state(method, found=Posed(before, ("facade", "flank")))
+        made = following(state(method), before)
         assert faced(made, first, second) == expected
 
 
@@ -99,10 +114,10 @@ def asked(monkeypatch: pytest.MonkeyPatch, made: State) -> list[tuple[Any, ...]]
 
     monkeypatch.setattr(fused_pose, "votes_of", votes_of)
     monkeypatch.setattr(fused_pose, "settled", settled)
-    made = made._replace(found=Posed(standing(torso_x=20.0), ("facade", "flank")))
-    pose = fused_pose.step(made, RIG, (FIRST, SECOND), None).pose
+    made = following(made, standing(torso_x=20.0))
+    pose = posed(made, FIRST, SECOND).pose
     assert pose == pytest.approx(heard[1][0] + 1.0)
-    assert fused_pose.step(made, RIG, (FIRST, None), None).pose is not None
+    assert posed(made, FIRST, None).pose is not None
     assert len(heard) == 2, "one view alone does not vote"
     return heard
 
@@ -125,11 +140,11 @@ def test_a_prior_that_was_fitted_is_turned_too_and_a_measured_body_is_not(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     sample = Sample(standing(), (FIRST, SECOND))
-    assert asked(monkeypatch, state(DEFAULT, Opening(bdp=PERSON, samples=(sample,))))[0][3]
+    assert asked(monkeypatch, state(DEFAULT, PRIOR._replace(samples=(sample,))))[0][3]
     measured = MEASURED._replace(samples=(sample,))
     assert not asked(monkeypatch, state(DEFAULT, measured))[0][3]
 
 
 def test_the_paper_does_not_vote(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(fused_pose, "settled", pytest.fail)
-    assert fused_pose.step(state(PAPER), RIG, (FIRST, SECOND), None).pose.shape == (25,)
+    assert posed(state(PAPER), FIRST, SECOND).pose.shape == (25,)

@@ -5,6 +5,7 @@ from pathlib import Path
 import msgspec
 
 from calibration.gate.moved_cameras import AS_IT_WAS, MovedCameras
+from common.body.body import rest_pose
 from common.body.proportions import thesis_bdp
 from common.bus.control_messages import Ended
 from common.config.settings import Settings
@@ -13,22 +14,24 @@ from common.rig.camera import paper_rig
 from common.rig.upright import Shift
 from integrator import merge_state
 from integrator.handed_over import NAME, Estate
-from integrator.opening_posture import Opening
+from integrator.measuring.known_body import Measured, Unmeasured
+from integrator.person import Following, Posed, Waiting
+from integrator.pose import smoothing
 
 RIG = paper_rig((160, 120), (200.0, 200.0), (4.5, 4.5))
 FRESH = merge_state.init(None, 1 / 15, Settings(), METHODS["default"])
-KNOWN = FRESH._replace(
-    rig=RIG, opening=Opening(thesis_bdp(1.6), True, (0.0, 0.9, 2.0)), numbered=70
-)
+BODY = Measured(thesis_bdp(1.6), (0.0, 0.9, 2.0))
+KNOWN = FRESH._replace(rig=RIG, person=Waiting(BODY), numbered=70)
 
 
 def test_a_successor_knows_body_rig_and_count_and_begins_its_poses_anew(tmp_path: Path) -> None:
-    Estate(tmp_path).leave(KNOWN._replace(doubted=3, calibration=2), 0.1, 9.0)
+    smooth, found = smoothing.init(17, 1 / 15), Posed(rest_pose(), ("facade", "flank"))
+    person = Following(BODY, found, smooth, doubted=3)
+    Estate(tmp_path).leave(KNOWN._replace(person=person, calibration=2), 0.1, 9.0)
     estate = Estate(tmp_path)
     taken = estate.taken_up(FRESH)
-    assert (taken.opening, taken.rig, taken.numbered) == (KNOWN.opening, RIG, 70)
+    assert (taken.person, taken.rig, taken.numbered) == (Waiting(BODY), RIG, 70)
     assert (taken.calibration, estate.late_s) == (2, 0.1)
-    assert (taken.found, taken.doubted) == (None, 0)
 
 
 def test_a_successor_knows_who_has_ended(tmp_path: Path) -> None:
@@ -69,10 +72,11 @@ def test_nothing_is_left_before_anything_is_known_and_nothing_twice(tmp_path: Pa
 
 def test_a_body_that_has_just_been_measured_is_left_at_once(tmp_path: Path) -> None:
     """Who is killed within the second would else have the person stand in a T again."""
-    estate, measuring = Estate(tmp_path), KNOWN.opening._replace(measured=False)
-    estate.leave(KNOWN._replace(opening=measuring), 0.0, 9.0)
+    estate, measuring = Estate(tmp_path), Unmeasured(BODY.bdp)
+    estate.leave(KNOWN._replace(person=Waiting(measuring)), 0.0, 9.0)
+    assert Estate(tmp_path).taken_up(FRESH).person.body == measuring
     estate.leave(KNOWN, 0.0, 9.1)
-    assert Estate(tmp_path).taken_up(FRESH).opening.measured
+    assert Estate(tmp_path).taken_up(FRESH).person.body == BODY
 
 
 def test_what_cannot_be_read_is_as_if_nothing_were_left(tmp_path: Path) -> None:

@@ -33,13 +33,15 @@ from common.bus.instant import Instant
 from common.bus.message_codec import decode, encode
 from common.bus.messages import Guide
 from common.config.settings import Settings
-from common.method import DEFAULT, METHODS, Mode
+from common.method import DEFAULT, Mode
 from common.rig.camera import project
 from integrator import merge, merge_state
+from integrator.belief import LOST_S
 from integrator.frame_numbers import NO_FRAME, FrameTimes
-from integrator.outgoing import LOST_S
+from integrator.measuring.known_body import Measured, Unmeasured
+from integrator.person import Following, Posed, Sighting, Waiting
+from integrator.pose import smoothing
 from integrator.rig.body_position import scales_at
-from integrator.single.sight import Annotations
 
 LOST = round(15 * LOST_S)
 MODES = pytest.mark.parametrize("mode", ["paper", "default"])
@@ -137,7 +139,9 @@ def test_the_guide_carries_the_scale_of_where_the_body_is() -> None:
         assert before.guide.scale_px_per_m == pytest.approx(
             scales_at(RIG, np.array(before.body.pose[:3])), rel=1e-6
         )
-    last, measured_at_m = told[-1].guide, np.array(stage.state.opening.measured_at_m)
+    last, body = told[-1].guide, stage.state.person.body
+    assert isinstance(body, Measured)
+    measured_at_m = np.array(body.measured_at_m)
     factors = np.array(last.scale_px_per_m) / np.array(scales_at(RIG, measured_at_m))
     assert factors == pytest.approx([4.0 / 3.5, 4.0 / 4.3], rel=0.03)
 
@@ -249,9 +253,10 @@ def test_who_leaves_one_view_for_the_other_is_told_by_what_that_one_knows() -> N
     stage, (first, second) = Stage(), silhouettes(standing())
     for masks, number in (((first, None), 1), ((None, second), 2), ((first, None), 1)):
         stage.see(masks)
-        assert stage.state.found is not None
-        assert stage.state.found.alone is not None
-        assert stage.state.found.alone.number == number
+        found = stage.state.person.found
+        assert found is not None
+        assert found.alone is not None
+        assert found.alone.number == number
 
 
 @MODES
@@ -385,16 +390,23 @@ def instants(period_s: float = 0.1, alone: bool = False) -> merge_state.State:
     )
 
 
+def following(pose: Vector, period_s: float = 0.1, **more: Any) -> Following:
+    """Somebody whose body is known had a pose at the instant before."""
+    found, smooth = Posed(pose, ("facade", "flank")), smoothing.init(len(ANGLE_NAMES), period_s)
+    return Following(Unmeasured(PERSON), found, smooth, **more)
+
+
 def test_what_is_remembered_of_one_pair_of_views_is_none_of_another() -> None:
     """The networks' memory is of where the pair's cameras stand, the agreement is between them."""
     kept: Any = SimpleNamespace()
-    found = merge_state.Posed(standing(), ("facade", "flank"), memory=kept)
+    person = following(standing())
+    person = person._replace(found=person.found._replace(memory=kept))
     agreement = rig_agreement.State(last_s=3.0)
-    before = instants()._replace(pair=(0, 1), found=found, agreement=agreement)
+    before = instants()._replace(pair=(0, 1), person=person, agreement=agreement)
     same, other = merge._with_pair(before, (0, 1)), merge._with_pair(before, (0, 2))
-    assert (same.found, same.agreement) == (found, agreement)
+    assert (same.person, same.agreement) == (person, agreement)
     assert other.pair == (0, 2)
-    assert other.found == found._replace(memory=None)
+    assert other.person.found == person.found._replace(memory=None)
     assert other.agreement == rig_agreement.State()
 
 
@@ -406,8 +418,7 @@ def test_an_instant_counts_on_from_what_each_viewer_reported_last() -> None:
     both, dt_s = merge._at(state, Instant((first, second)))
     assert (both.frames, both.number, both.numbered, both.last_s) == ((6, 12), 6, 6, 0.6)
     assert dt_s == 0.0, "nobody was there before"
-    found: Any = object()
-    state = state._replace(found=found)
+    state = state._replace(person=following(standing()))
     later = msgspec.structs.replace(second, clock_s=1.0)
     own, dt_s = merge._at(state, Instant((first, later)))
     assert own.last_s == 0.62
@@ -444,25 +455,21 @@ def test_rows_are_camera_2s_only_where_that_is_alone_in_the_run() -> None:
 def test_a_pose_that_is_not_believed_does_not_move_the_smooth_one() -> None:
     """Unless there is nothing else to go by; and as printed there is none."""
     pose = standing((0.2, 0.1))
-    posed = merge_state.Posed(pose, ("facade", "flank"))
-    state = instants()._replace(found=posed)
     raw = pose[list(ANGLES_IN_POSE)]
-    doubted = state._replace(doubted=2)
-    started, angles = merge._smoothed(doubted, 0.1)
+    started, angles = merge._smoothed(following(pose, doubted=2), DEFAULT, 0.1)
     assert angles == pytest.approx(raw)
     assert started.smooth.P is not None
     other = standing((0.2, 0.1), l_hip_x=30.0)
-    moved = started._replace(found=posed._replace(pose=other))
-    _, held = merge._smoothed(moved, 0.1)
+    moved = started._replace(found=started.found._replace(pose=other))
+    _, held = merge._smoothed(moved, DEFAULT, 0.1)
     assert held == pytest.approx(raw, abs=1e-6)
-    _, followed = merge._smoothed(moved._replace(doubted=0), 0.1)
+    _, followed = merge._smoothed(moved._replace(doubted=0), DEFAULT, 0.1)
     at = ANGLE_NAMES.index("l_hip_x")
     assert 5.0 < followed[at] <= 30.0
-    printed = moved._replace(method=METHODS["paper"])
-    same, angles = merge._smoothed(printed, 0.1)
-    if not printed.method.smoothing:
-        assert same is printed
-        assert angles == pytest.approx(other[list(ANGLES_IN_POSE)])
+    printed = msgspec.structs.replace(DEFAULT, smoothing=False)
+    same, angles = merge._smoothed(moved, printed, 0.1)
+    assert same is moved
+    assert angles == pytest.approx(other[list(ANGLES_IN_POSE)])
 
 
 def test_scores_are_those_of_each_views_own_camera_and_silhouette() -> None:
@@ -470,14 +477,12 @@ def test_scores_are_those_of_each_views_own_camera_and_silhouette() -> None:
     pose = standing((0.3, -0.2))
     first, second = silhouettes(pose)
     raised, _ = silhouettes(standing((0.3, -0.2), r_shoulder_z=90.0))
-    opening = instants().opening._replace(bdp=PERSON)
-    found = merge_state.Posed(pose, ("facade", "flank"))
-    state = instants()._replace(opening=opening, found=found)
+    person = following(pose)
 
     def scores(*masks: Any) -> tuple[float, ...]:
         given = [None if mask is None else observation(mask) for mask in masks]
-        seen = merge.Sighting(RIG, (given[0], given[1]), (0, 1), 0.1, Annotations())
-        return merge._scores(state, seen)
+        now = Sighting(Instant((None, None)), RIG, RIG, (given[0], given[1]), (0, 1), 0.1)
+        return merge._scores(person, now)
 
     assert scores(first, second) == (1.0, 1.0)
     one, other = scores(raised, second)
@@ -486,19 +491,28 @@ def test_scores_are_those_of_each_views_own_camera_and_silhouette() -> None:
     assert scores(first, None) == (1.0, 0.0)
     assert scores(None, second) == (0.0, 1.0)
     alone: Any = SimpleNamespace(score=0.37)
-    state = state._replace(found=found._replace(alone=alone))
+    person = person._replace(found=person.found._replace(alone=alone))
     assert scores(first, None) == (0.37, 0.0)
     assert scores(None, second) == (0.0, 0.37)
 
 
 def test_without_anybody_the_body_is_kept_and_its_pose_is_not() -> None:
-    state = instants()._replace(
-        found=merge_state.Posed(standing(), ("facade", "flank")), doubted=3, ever_confirmed=True
-    )
-    state, _ = merge._smoothed(state, 0.1)
-    after = merge._without_pose(state)
-    assert (after.found, after.doubted, after.ever_confirmed) == (None, 0, False)
-    assert after.smooth.P is None
-    assert after.smooth.period_s == state.smooth.period_s
-    assert len(after.smooth.x) == len(state.smooth.x)
-    assert after.opening is state.opening
+    person = following(standing(), doubted=3, ever_confirmed=True)
+    state = instants()._replace(person=person)
+    after, body, _ = merge.step(state, Instant((report(1, NOBODY, frame=1), None)))
+    assert after.person == Waiting(person.body)
+    assert (body.status, body.bdp) == ("empty", person.body.bdp)
+
+
+def test_who_comes_has_a_filter_of_their_own_and_who_stays_keeps_theirs() -> None:
+    """At the run's rate; whom a changed rig made to be looked for afresh was believed before."""
+    person = following(standing(), doubted=3)
+    known, found = Unmeasured(PERSON.scaled(1.1)), Posed(standing((0.2, 0.0)), ("flank", "facade"))
+    stays = merge._following(instants()._replace(person=person), known, found)
+    assert stays == person._replace(body=known, found=found)
+    for believed in (False, True):
+        state = instants(0.2)._replace(person=Waiting(ever_confirmed=believed))
+        comes = merge._following(state, known, found)
+        assert (comes.smooth.period_s, comes.smooth.P) == (0.2, None)
+        assert len(comes.smooth.x) == 2 * len(ANGLE_NAMES)
+        assert (comes.doubted, comes.ever_confirmed) == (0, believed)

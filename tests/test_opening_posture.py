@@ -13,8 +13,9 @@ from common.body.observation import Measure, Observation
 from common.body.proportions import stature, thesis_bdp
 from common.method import DEFAULT, PAPER
 from common.rig.camera import Camera, Rig, as_matrix, as_row, paper_rig
-from integrator import opening_posture as stage
-from integrator.opening_posture import LEG_KEPT, Opening, universal_bdp
+from integrator.measuring import opening_posture as stage
+from integrator.measuring.known_body import Known, Measured, Opening, Unknown, Unmeasured
+from integrator.measuring.opening_posture import LEG_KEPT, universal_bdp
 from viewer.paper.measure import measure_front, measure_side
 
 Seen = tuple[Observation | None, Observation | None]
@@ -46,11 +47,10 @@ def looking_from(deg: float, rise_m: float = 0.0) -> Rig:
 
 
 def settled(seen: Seen, rig: Rig = RIG, due: int = 1) -> Bdp:
-    known = Opening()
+    known: Opening = Unknown()
     for _ in range(due):
         known, _ = stage.step(known, rig, seen, due, DEFAULT)
-    assert known.measured
-    assert known.bdp is not None
+    assert isinstance(known, Measured)
     return known.bdp
 
 
@@ -86,8 +86,7 @@ def test_a_rig_of_another_kind_tells_the_same_body_and_where_its_navel_is(
 ) -> None:
     """Camera 2 tells no row of the navel: the top of its silhouette is none."""
     rig = looking_from(deg, rise_m)
-    known, place = stage.step(Opening(), rig, measured(rig), 1, DEFAULT)
-    assert known.bdp is not None
+    known, place = stage.step(Unknown(), rig, measured(rig), 1, DEFAULT)
     assert place is not None
     assert stature(known.bdp) == pytest.approx(stature(PERSON), rel=0.05)
     assert place.tolist() == pytest.approx([0.0, NAVEL_M, 0.0], abs=0.12)
@@ -96,20 +95,21 @@ def test_a_rig_of_another_kind_tells_the_same_body_and_where_its_navel_is(
 @pytest.mark.parametrize("deg", [0.5, 15.0, 45.0, 165.0, 180.0])
 def test_where_camera_2_sees_no_flank_nothing_is_measured(deg: float) -> None:
     rig = looking_from(deg)
-    known, place = stage.step(Opening(), rig, measured(rig), 1, DEFAULT)
-    assert (known.measured, known.under_way, place) == (False, False, None)
+    known, place = stage.step(Unknown(), rig, measured(rig), 1, DEFAULT)
+    assert (type(known), known.under_way, place) == (Unmeasured, False, None)
 
 
 def test_the_median_of_the_due_frames_is_taken() -> None:
     """P46: one frame gone wrong of five does not count."""
-    good, known = measured(), Opening()
+    good = measured()
+    known: Opening = Unknown()
     assert good[0] is not None
     assert good[0].measure is not None
     assert good[0].measure.bdp_px is not None
     odd = msgspec.structs.replace(good[0].measure, bdp_px=good[0].measure.bdp_px.scaled(2.0))
     wrong: Seen = (msgspec.structs.replace(good[0], measure=odd), good[1])
     for i, seen in enumerate([good, wrong, good, good, good]):
-        assert not known.measured
+        assert not isinstance(known, Measured)
         known, place = stage.step(known, RIG, seen, 5, DEFAULT)
         assert (place is not None) == (i == 4)
     assert known.bdp == settled(good)
@@ -121,13 +121,12 @@ def test_frames_without_both_measures_tell_nothing() -> None:
     bare: Seen = tuple(  # type: ignore[assignment]
         None if each is None else msgspec.structs.replace(each, measure=None) for each in good
     )
-    known = Opening()
-    for seen in [bare, (good[0], None), (None, good[1])]:
+    known: Known = Unmeasured(stage.step(Unknown(), RIG, bare, 1, DEFAULT)[0].bdp)
+    for seen in [(good[0], None), (None, good[1])]:
         known, place = stage.step(known, RIG, seen, 1, DEFAULT)
         assert place is None
-    assert not known.measured
+    assert isinstance(known, Unmeasured)
     assert not known.under_way
-    assert known.bdp is not None
     assert stature(known.bdp) == pytest.approx(1.75, abs=0.1)
 
 
@@ -135,7 +134,7 @@ def test_a_posture_that_is_broken_off_begins_afresh() -> None:
     """P10, P46: five frames are due; four between do not break it off, five do."""
     good, nothing = measured(), (None, None)
     for between, kept in ((4, True), (5, False)):
-        known, _ = stage.step(Opening(), RIG, good, 5, DEFAULT)
+        known, _ = stage.step(Unknown(), RIG, good, 5, DEFAULT)
         assert known.under_way
         for _ in range(between):
             known, _ = stage.step(known, RIG, nothing, 5, DEFAULT)
@@ -144,15 +143,16 @@ def test_a_posture_that_is_broken_off_begins_afresh() -> None:
 
 def test_once_measured_it_stays() -> None:
     good = measured()
-    known, _ = stage.step(Opening(), RIG, good, 1, DEFAULT)
+    known, _ = stage.step(Unknown(), RIG, good, 1, DEFAULT)
     taller = measured(paper_rig((160, 120), (230.0, 230.0), (4.0, 4.0)))
     assert stage.step(known, RIG, taller, 1, DEFAULT) == (known, None)
 
 
 def test_the_place_of_the_opening_posture_is_where_it_was_taken() -> None:
     """P45: the reference of the scaling factors."""
-    known, place = stage.step(Opening(), RIG, measured(place_m=(0.3, -0.4)), 1, DEFAULT)
+    known, place = stage.step(Unknown(), RIG, measured(place_m=(0.3, -0.4)), 1, DEFAULT)
     assert place is not None
+    assert isinstance(known, Measured)
     assert known.measured_at_m[::2] == pytest.approx((0.3, -0.4), abs=0.06)
     assert known.measured_at_m == pytest.approx(tuple(place))
 
@@ -160,7 +160,7 @@ def test_the_place_of_the_opening_posture_is_where_it_was_taken() -> None:
 def test_legs_reach_the_floor() -> None:
     """A silhouette's lowest row is the toes, some 50 mm below the soles in the picture."""
     good = measured()
-    body, place = settled(good), stage.step(Opening(), RIG, good, 1, DEFAULT)[1]
+    body, place = settled(good), stage.step(Unknown(), RIG, good, 1, DEFAULT)[1]
     assert place is not None
     assert body.r_upper_leg.height + body.r_lower_leg.height == pytest.approx(float(place[1]))
     assert isinstance(good[0] and good[0].measure, Measure)
@@ -168,8 +168,7 @@ def test_legs_reach_the_floor() -> None:
 
 def test_as_printed_legs_end_where_the_silhouette_does() -> None:
     """P16: legs are 0.6 of what is below the shoulders, wherever the floor is."""
-    body = stage.step(Opening(), RIG, measured(), 1, PAPER)[0].bdp
-    assert body is not None
+    body = stage.step(Unknown(), RIG, measured(), 1, PAPER)[0].bdp
     legs_m = body.r_upper_leg.height + body.r_lower_leg.height
     assert legs_m == pytest.approx(1.5 * body.torso.height, rel=1e-6)
 
@@ -211,12 +210,12 @@ def test_legs_reach_from_the_navel_to_the_floor_where_legs_could(
 ) -> None:
     """Both halves of both alike; the paper leaves them as the silhouette has them."""
     navel_m = 2 * share * PERSON.r_upper_leg.height
-    known = Opening(bodies=(PERSON,) * 3, places_m=((0.1, navel_m, -0.2),) * 3)
+    known = Unmeasured(PERSON, bodies=(PERSON,) * 3, places_m=((0.1, navel_m, -0.2),) * 3)
     method = msgspec.structs.replace(DEFAULT, legs_to_floor=to_floor)
     found, place = stage._settled(known, 3, method)
     assert place == pytest.approx([0.1, navel_m, -0.2])
+    assert isinstance(found, Measured)
     assert found.measured_at_m == pytest.approx((0.1, navel_m, -0.2))
-    assert found.bdp is not None
     fits = to_floor and LEG_KEPT[0] <= share <= LEG_KEPT[1]
     for leg in ("r_upper_leg", "l_upper_leg", "r_lower_leg", "l_lower_leg"):
         own = getattr(PERSON, leg).height
@@ -229,17 +228,16 @@ def test_a_body_is_measured_anew_by_a_rig_that_is_known_only_now() -> None:
     """The same pictures by cameras twice as far away are of a body twice as large; what a rig
     cannot have seen is left out, and a body that was known before the run is kept."""
     seen = measured()
-    known = Opening()
+    known: Opening = Unknown()
     for _ in range(3):
         known, _ = stage.step(known, RIG, seen, 3, PAPER)
+    assert isinstance(known, Measured)
     far = paper_rig((160, 120), (200.0, 200.0), (8.0, 8.0))
     found = stage.elsewhere(known, far, 3, PAPER, 1.6)
-    assert found.measured
-    assert known.bdp is not None
-    assert found.bdp is not None
+    assert isinstance(found, Measured)
     assert stature(found.bdp) == pytest.approx(2 * stature(known.bdp), rel=0.02)
-    assert not stage.elsewhere(known, far, 4, PAPER, 1.6).measured
+    assert isinstance(stage.elsewhere(known, far, 4, PAPER, 1.6), Unmeasured)
     alike = looking_from(10.0)
-    assert stage.elsewhere(known, alike, 1, PAPER, 1.6) == Opening(bdp=thesis_bdp(1.6))
+    assert stage.elsewhere(known, alike, 1, PAPER, 1.6) == Unmeasured(thesis_bdp(1.6))
     before = stage.init(PERSON)
     assert stage.elsewhere(before, far, 3, PAPER, 1.6) == before

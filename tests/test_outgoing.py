@@ -6,18 +6,30 @@ from typing import Any
 import msgspec
 import numpy as np
 import pytest
-from staging import NOBODY, PAPER, RIG, Stage, changed, exact, report, silhouettes, standing
+from staging import (
+    NOBODY,
+    PAPER,
+    PERIOD_S,
+    RIG,
+    Stage,
+    changed,
+    exact,
+    report,
+    silhouettes,
+    standing,
+)
 
 from calibration.gate import moved_cameras, rig_agreement, silhouette_motion
 from common.body.proportions import stature
 from common.bus.instant import Instant
-from common.bus.messages import Agreement, Lifting, View
+from common.bus.messages import Agreement, Guide, Lifting, View
 from common.method import DEFAULT
 from common.raster.silhouette_report import pack
 from common.rig.camera import project
-from integrator import outgoing
+from integrator import belief, guidance, outgoing
+from integrator.measuring.known_body import Measured
 from integrator.merge_state import State
-from integrator.outgoing import body_of, guide_of, no_detection, weighed
+from integrator.person import Following, Sighting, Waiting
 from integrator.rig.body_position import pixels_of, scales_at
 from integrator.single.sight import Annotations
 
@@ -46,32 +58,48 @@ def state(monkeypatch: pytest.MonkeyPatch) -> State:
     return stage.state._replace(number=41, frames=(11, 12), calibration=3)
 
 
-def told(state: State, pair: Instant = BOTH, scores: tuple[float, float] = SCORES) -> Any:
-    assert state.found is not None
+@pytest.fixture
+def person(state: State) -> Following:
+    assert isinstance(state.person, Following)
+    return state.person
+
+
+def sighting(pair: Instant = BOTH, **more: Any) -> Sighting:
+    return Sighting(pair, RIG, RIG, pair.detections, (0, 1), 0.1, **more)
+
+
+def told(state: State, person: Following, pair: Instant = BOTH) -> Any:
     angles = np.linspace(1.0, 17.0, 17)
-    return body_of(state, pair, pair.detections, angles, scores)
+    return outgoing.body_of(state, person, sighting(pair), angles, SCORES)
 
 
-def test_a_body_is_of_its_instant_and_of_the_frames_that_it_was_made_of(state: State) -> None:
-    body = told(state)
+def guide_of(state: State, person: Following, pair: Instant, settled_now: bool) -> Guide:
+    return guidance.guide_of(state, person, sighting(pair), settled_now)
+
+
+def test_a_body_is_of_its_instant_and_of_the_frames_that_it_was_made_of(
+    state: State, person: Following
+) -> None:
+    body = told(state, person)
     assert (body.frame, body.captured_s, body.clock_s) == (41, 2.0, 7.0)
     assert (body.made_of, body.views, body.status) == ((11, 12), "both", "tracking")
     assert (body.calibration, body.scale_source) == (3, "calibrated")
     assert body.confidence == (0.8,) * 15
     assert body.score == SCORES
-    assert state.found is not None
-    assert body.pose[:3] == tuple(state.found.pose[:3])
+    assert body.pose[:3] == tuple(person.pose[:3])
     assert sorted(set(body.pose) & set(np.linspace(1.0, 17.0, 17))) == [*np.linspace(1.0, 17.0, 17)]
     assert body.angles_raw_deg != body.pose[-17:]
     assert len(body.extremities_m) == len(body.extremities_confidence) == 7
-    alone = told(state, Instant((None, seen(2))))
+    alone = told(state, person, Instant((None, seen(2))))
     assert (alone.made_of, alone.views) == ((-1, 12), "2")
-    assert told(state, Instant((seen(1), None))).views == "1"
+    assert told(state, person, Instant((seen(1), None))).views == "1"
 
 
-def test_matches_of_both_viewers_and_of_their_sticks_are_counted(state: State) -> None:
+def test_matches_of_both_viewers_and_of_their_sticks_are_counted(
+    state: State, person: Following
+) -> None:
     pair = Instant((seen(1, matches=30), seen(2, matches=12)))
-    assert told(state, pair).matches == 42
+    assert told(state, person, pair).matches == 42
 
 
 @pytest.mark.parametrize(
@@ -79,19 +107,20 @@ def test_matches_of_both_viewers_and_of_their_sticks_are_counted(state: State) -
     [(0, "tracking", 0.8), (1, "predicted", 0.0), (4, "predicted", 0.0), (5, "lost", 0.0)],
 )
 def test_a_doubted_body_is_predicted_for_four_frames_and_then_has_no_pose(
-    state: State, doubted: int, status: str, confidence: float
+    state: State, person: Following, doubted: int, status: str, confidence: float
 ) -> None:
-    body = told(state._replace(doubted=doubted))
+    body = told(state, person._replace(doubted=doubted))
     assert body.status == status
     assert set(body.confidence) == {confidence}
     assert bool(body.joints_m) is (status != "lost")
 
 
-def test_what_was_found_with_a_pose_goes_before_how_well_it_fits(state: State) -> None:
+def test_what_was_found_with_a_pose_goes_before_how_well_it_fits(
+    state: State, person: Following
+) -> None:
     own = np.linspace(0.1, 0.8, 15)
-    assert state.found is not None
-    state = state._replace(found=state.found._replace(confidence=own))
-    assert told(state).confidence == tuple(own)
+    person = person._replace(found=person.found._replace(confidence=own))
+    assert told(state, person).confidence == tuple(own)
 
 
 @pytest.mark.parametrize(
@@ -100,98 +129,103 @@ def test_what_was_found_with_a_pose_goes_before_how_well_it_fits(state: State) -
     ids=["both", "trusted", "one view"],
 )
 def test_a_rig_that_both_views_contradict_takes_confidence_away(
-    state: State, pair: Instant, trusts: bool, left: float
+    state: State, person: Following, pair: Instant, trusts: bool, left: float
 ) -> None:
     doubts = rig_agreement.State(told=Agreement(70.0, 0.0, 0.0, 10.0, 0.25))
     settings = msgspec.structs.replace(state.settings, trust_calibration=trusts)
-    body = told(state._replace(agreement=doubts, settings=settings), pair)
+    body = told(state._replace(agreement=doubts, settings=settings), person, pair)
     assert body.confidence == pytest.approx([0.8 * left] * 15)
 
 
-def test_joints_that_the_only_picture_cuts_off_are_guessed(state: State) -> None:
+def test_joints_that_the_only_picture_cuts_off_are_guessed(state: State, person: Following) -> None:
     """The lower half is outside; of two views the other may show it."""
     high = RIG.height // 2
-    assert state.found is not None
     cut = changed(seen(1, cut=True), height=high)
-    body = told(state, Instant((cut, None)))
+    body = told(state, person, Instant((cut, None)))
     below = [place[1] > high for place in body.joints_px[0]]
     assert 2 < sum(below) < 12
     assert [sure == 0.0 for sure in body.confidence] == below
-    assert {body.status, told(state, Instant((cut, seen(2)))).status} == {"tracking"}
-    assert 0.0 not in told(state, Instant((cut, seen(2)))).confidence
+    assert {body.status, told(state, person, Instant((cut, seen(2)))).status} == {"tracking"}
+    assert 0.0 not in told(state, person, Instant((cut, seen(2)))).confidence
 
 
 @pytest.mark.parametrize(
     ("annotated", "believed"), [(False, True), (True, False)], ids=["borne out", "placed by hand"]
 )
 def test_a_body_that_is_believed_is_doubted_no_more(
-    state: State, monkeypatch: pytest.MonkeyPatch, annotated: bool, believed: bool
+    state: State,
+    person: Following,
+    monkeypatch: pytest.MonkeyPatch,
+    annotated: bool,
+    believed: bool,
 ) -> None:
-    monkeypatch.setattr(outgoing, "is_believed", lambda *_: believed)
+    monkeypatch.setattr(belief, "is_believed", lambda *_: believed)
     notes = Annotations(joints_px={"l_wrist": (3.0, 4.0)} if annotated else {})
-    after = weighed(state._replace(doubted=3, ever_confirmed=False), BOTH, SCORES, notes)
+    person = person._replace(doubted=3, ever_confirmed=False)
+    after = belief.weighed(person, sighting(annotations=notes), SCORES, PERIOD_S)
     assert (after.doubted, after.ever_confirmed) == (0, True)
 
 
 def test_what_the_network_remembers_of_a_body_that_both_lost_is_forgotten_every_five_frames(
-    state: State, monkeypatch: pytest.MonkeyPatch
+    person: Following, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(outgoing, "is_believed", lambda *_: False)
-    assert state.found is not None
+    monkeypatch.setattr(belief, "is_believed", lambda *_: False)
     memory: Any = object()
-    found = state.found._replace(memory=memory)
-    state = state._replace(found=found, doubted=0, ever_confirmed=False)
+    found = person.found._replace(memory=memory)
+    person = person._replace(found=found, doubted=0, ever_confirmed=False)
     kept = []
     for _ in range(2 * LOST_FRAMES):
-        state = weighed(state, BOTH, SCORES, Annotations())
-        assert state.found is not None
-        kept.append(state.found.memory is memory)
-        state = state._replace(found=state.found._replace(memory=memory))
-    assert state.doubted == 2 * LOST_FRAMES
+        person = belief.weighed(person, sighting(), SCORES, PERIOD_S)
+        kept.append(person.found.memory is memory)
+        person = person._replace(found=found)
+    assert person.doubted == 2 * LOST_FRAMES
     assert kept == [True, True, True, True, False] * 2
 
 
 @pytest.mark.parametrize(("ever_confirmed", "doubted"), [(True, 1), (False, LOST_FRAMES)])
 def test_one_view_keeps_what_it_remembers_and_loses_at_once_who_it_never_met(
-    state: State, monkeypatch: pytest.MonkeyPatch, ever_confirmed: bool, doubted: int
+    state: State,
+    person: Following,
+    monkeypatch: pytest.MonkeyPatch,
+    ever_confirmed: bool,
+    doubted: int,
 ) -> None:
-    monkeypatch.setattr(outgoing, "is_believed", lambda *_: False)
+    monkeypatch.setattr(belief, "is_believed", lambda *_: False)
     memory, alone = object(), object()
-    assert state.found is not None
-    found = state.found._replace(memory=memory, alone=alone)  # type: ignore[arg-type]
-    after = weighed(
-        state._replace(found=found, ever_confirmed=ever_confirmed),
-        Instant((seen(1), None)),
-        SCORES,
-        Annotations(),
-    )
+    found = person.found._replace(memory=memory, alone=alone)  # type: ignore[arg-type]
+    person = person._replace(found=found, ever_confirmed=ever_confirmed)
+    after = belief.weighed(person, sighting(Instant((seen(1), None))), SCORES, PERIOD_S)
     assert after.doubted == doubted
-    assert after.found is not None
     assert after.found.memory is memory
 
 
-def test_as_printed_each_viewer_starts_where_it_had_the_body_itself(state: State) -> None:
-    guide = guide_of(state, BOTH, False)
+def test_as_printed_each_viewer_starts_where_it_had_the_body_itself(
+    state: State, person: Following
+) -> None:
+    guide = guide_of(state, person, BOTH, False)
     assert guide.root_px == ((71.0, 50.0), (72.0, 50.0))
     assert (guide.frame, guide.clock_s, guide.frames) == (41, 7.0, (11, 12))
-    assert state.found is not None
-    place = state.found.pose[:3]
+    place = person.pose[:3]
     shared = pixels_of(RIG, place)
-    assert guide_of(state, Instant((seen(1), None)), False).root_px == ((71.0, 50.0), shared[1])
-    assert guide_of(state, BOTH, True).root_px == shared, "the body has just been measured"
-    assert guide_of(state._replace(method=DEFAULT), BOTH, False).root_px == shared
+    assert guide_of(state, person, Instant((seen(1), None)), False).root_px == (
+        (71.0, 50.0),
+        shared[1],
+    )
+    assert guide_of(state, person, BOTH, True).root_px == shared, "the body has just been measured"
+    assert guide_of(state._replace(method=DEFAULT), person, BOTH, False).root_px == shared
 
 
-def test_a_guide_tells_the_size_of_a_metre_and_the_row_of_who_stands_upright(state: State) -> None:
+def test_a_guide_tells_the_size_of_a_metre_and_the_row_of_who_stands_upright(
+    state: State, person: Following
+) -> None:
     """By how the body was measured, where it was: 1.1 m high, 0.3 m nearer to camera 1."""
-    guide = guide_of(state, BOTH, False)
-    assert state.found is not None
-    place = state.found.pose[:3]
+    guide = guide_of(state, person, BOTH, False)
+    place = person.pose[:3]
     assert guide.scale_px_per_m == pytest.approx(scales_at(RIG, place))
-    assert guide.pose == tuple(state.found.pose)
+    assert guide.pose == tuple(person.pose)
     assert guide.rest_row_px == pytest.approx([at[1] for at in pixels_of(RIG, place)])
-    known = state.opening._replace(measured_at_m=(0.0, 1.1, 0.3), measured=True)
-    later = guide_of(state._replace(opening=known), BOTH, False)
+    known = Measured(person.body.bdp, (0.0, 1.1, 0.3))
+    later = guide_of(state, person._replace(body=known), BOTH, False)
     raised = pixels_of(RIG, np.array([place[0], 1.1, place[2]]))
     assert later.rest_row_px == pytest.approx([at[1] for at in raised])
     assert later.measured
@@ -203,47 +237,52 @@ def test_a_guide_tells_the_size_of_a_metre_and_the_row_of_who_stands_upright(sta
     [(True, "assumed", True), (True, "calibrated", False), (False, "assumed", False)],
 )
 def test_a_stick_is_asked_of_one_view_that_fits_badly_by_an_assumed_rig(
-    state: State, stick: bool, source: Any, asked: bool
+    state: State, person: Following, stick: bool, source: Any, asked: bool
 ) -> None:
-    assert state.found is not None
-    assert not guide_of(state._replace(scale_source="assumed"), BOTH, False).stick
+    assert not guide_of(state._replace(scale_source="assumed"), person, BOTH, False).stick
 
     class Alone:
         """One view that wants a stick, or not."""
 
     alone: Any = Alone()
     alone.stick = stick
-    state = state._replace(found=state.found._replace(alone=alone), scale_source=source)
-    assert guide_of(state, Instant((seen(1), None)), False).stick is asked
+    state = state._replace(scale_source=source)
+    person = person._replace(found=person.found._replace(alone=alone))
+    assert guide_of(state, person, Instant((seen(1), None)), False).stick is asked
 
 
-def test_where_nobody_is_the_lengths_and_the_facing_are_kept(state: State) -> None:
+def test_where_nobody_is_the_lengths_and_the_facing_are_kept(
+    state: State, person: Following
+) -> None:
     empty = Instant((report(1, NOBODY, frame=11), None))
-    state = state._replace(facing=("flank", "facade"), proposes=True)
-    body, guide = no_detection(state, empty)
+    waiting = Waiting(person.body)
+    state = state._replace(facing=("flank", "facade"), proposes=True, person=waiting)
+    body, guide = outgoing.no_person(state, empty), guidance.no_person(state, empty)
     assert (body.status, body.views, body.joints_m, body.made_of) == ("empty", "none", (), (11, -1))
     assert (body.facing, guide.facing) == (state.facing,) * 2
-    assert body.bdp == guide.bdp == state.opening.bdp is not None
+    assert body.bdp == guide.bdp == person.body.bdp
     assert (body.calibration, body.scale_source) == (3, "calibrated")
     assert (guide.frames, guide.status, guide.proposes) == ((11, 12), "empty", True)
-    assert guide.measured is state.opening.measured
+    assert not guide.measured
 
 
-def test_what_else_is_told_of_an_instant_is_what_the_state_knows(state: State) -> None:
+def test_what_else_is_told_of_an_instant_is_what_the_state_knows(
+    state: State, person: Following
+) -> None:
     """Cameras that moved, motion, what one view decided, whose picture is none is at -1."""
     stands = moved_cameras.MovedCameras(unconfirmed=(2,))
     lifting = Lifting("left", 0.9, (0.5,) * 10)
-    assert state.found is not None
     alone: Any = SimpleNamespace(lifting=lifting, stick=False)
-    known = state._replace(stands=stands, found=state.found._replace(alone=alone))
-    body = told(known, Instant((None, seen(2))))
+    known = state._replace(stands=stands)
+    one = person._replace(found=person.found._replace(alone=alone))
+    body = told(known, one, Instant((None, seen(2))))
     assert (body.moved, body.lifting) == ((2,), lifting)
-    assert told(state).lifting is None
+    assert told(state, person).lifting is None
     assert body.confidence == pytest.approx([0.4] * 15), "half of it is left"
     agreed = rig_agreement.State(told=Agreement(70.0, 0.0, 0.0, 10.0, 0.7))
-    assert told(known._replace(agreement=agreed)).confidence == pytest.approx([0.4] * 15)
-    assert told(known._replace(agreement=agreed)).agreement == agreed.told
-    assert told(known._replace(agreement=agreed), Instant((None, seen(2)))).agreement is None
+    assert told(known._replace(agreement=agreed), one).confidence == pytest.approx([0.4] * 15)
+    assert told(known._replace(agreement=agreed), one).agreement == agreed.told
+    assert told(known._replace(agreement=agreed), one, Instant((None, seen(2)))).agreement is None
     half_s = [seen(1, captured_s=at_s) for at_s in (0.0, 0.5)]
     moved = changed(half_s[1], silhouette=pack(NOBODY), area_px=90)
     motion = silhouette_motion.init(2)
@@ -251,8 +290,8 @@ def test_what_else_is_told_of_an_instant_is_what_the_state_knows(state: State) -
         motion = silhouette_motion.step(
             motion, Instant((None, msgspec.structs.replace(each, viewer=2)))
         )
-    assert guide_of(state._replace(motion=motion), BOTH, False).moves == (False, True)
-    empty, _ = no_detection(known, Instant((report(1, NOBODY), None)))
+    assert guide_of(state._replace(motion=motion), person, BOTH, False).moves == (False, True)
+    empty = outgoing.no_person(known, Instant((report(1, NOBODY), None)))
     assert empty.moved == (2,)
     behind = outgoing._pixels(np.array([[np.nan, np.nan], [3.0, 4.0]]))
     assert behind == ((-1.0, -1.0), (3.0, 4.0))
@@ -260,12 +299,12 @@ def test_what_else_is_told_of_an_instant_is_what_the_state_knows(state: State) -
 
 def test_scales_of_a_camera_that_has_the_body_behind_it_are_none() -> None:
     for bad in (-3.0, float("nan"), float("inf"), 0.0):
-        assert outgoing._or_unseen((bad, 50.0)) == (0.0, 50.0)
-        assert outgoing._or_unseen((60.0, bad)) == (60.0, 0.0)
+        assert guidance._or_unseen((bad, 50.0)) == (0.0, 50.0)
+        assert guidance._or_unseen((60.0, bad)) == (60.0, 0.0)
 
 
 def test_extremities_are_as_sure_as_they_are_seen_and_the_rig_is_believed(
-    state: State, monkeypatch: pytest.MonkeyPatch
+    state: State, person: Following, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     sure = np.linspace(0.1, 0.7, 7)
     asked: list[Any] = []
@@ -274,17 +313,16 @@ def test_extremities_are_as_sure_as_they_are_seen_and_the_rig_is_believed(
         asked.append((rig, given, stature_m))
         return ends_m + RAISED_M, sure
 
-    ruled = np.array(told(state).extremities_m)
+    ruled = np.array(told(state, person).extremities_m)
     monkeypatch.setattr(outgoing, "seen_extremities", seen_ends)
     stands = moved_cameras.MovedCameras(unconfirmed=(1,))
-    body = told(state._replace(stands=stands))
+    body = told(state._replace(stands=stands), person)
     assert body.extremities_confidence == pytest.approx(0.5 * sure)
     assert np.array(body.extremities_m) == pytest.approx(ruled + RAISED_M)
     for camera, pixels in zip(RIG.cameras, body.extremities_px, strict=True):
         assert np.array(pixels) == pytest.approx(project(camera, np.array(body.extremities_m)))
-    assert state.opening.bdp is not None
-    assert asked == [(RIG, BOTH.detections, stature(state.opening.bdp))]
-    doubted = told(state._replace(doubted=1))
+    assert asked == [(RIG, BOTH.detections, stature(person.body.bdp))]
+    doubted = told(state, person._replace(doubted=1))
     assert doubted.extremities_confidence == (0.0,) * 7
     assert np.array(doubted.extremities_m) == pytest.approx(ruled)
     assert len(asked) == 1
@@ -331,8 +369,5 @@ def test_matches_of_a_stick_count_with_those_of_its_viewer() -> None:
 
 
 @pytest.mark.parametrize(("rate_hz", "frames"), [(15.0, 5), (30.0, 10), (10.0, 3), (1.0, 1)])
-def test_a_body_is_lost_after_a_third_of_a_second_at_any_rate(
-    state: State, rate_hz: float, frames: int
-) -> None:
-    smooth = state.smooth._replace(period_s=1.0 / rate_hz)
-    assert outgoing._lost_frames(state._replace(smooth=smooth)) == frames
+def test_a_body_is_lost_after_a_third_of_a_second_at_any_rate(rate_hz: float, frames: int) -> None:
+    assert belief.lost_frames(1.0 / rate_hz) == frames

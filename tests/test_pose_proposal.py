@@ -17,6 +17,8 @@ from common.body.proportions import stature
 from common.bus.message_codec import decode, encode
 from common.config.settings import Settings
 from common.raster.similarity import Mask
+from integrator.measuring.known_body import Measured
+from integrator.person import Following, Waiting
 from integrator.proposal import landmark_look, pose_proposal
 from integrator.proposal.pose_proposal import (
     AT,
@@ -230,11 +232,11 @@ def test_the_memory_goes_with_the_person() -> None:
     stage = default()
     for pair in did.masks[: (did.phase == TPOSE).sum() + 10]:
         stage.see(pair)
-    assert stage.state.found is not None
+    assert isinstance(stage.state.person, Following)
     empty = np.zeros((HEIGHT, WIDTH), np.bool_)
     stage.see((empty, empty))
-    assert stage.state.found is None
-    assert stage.state.opening.measured
+    assert isinstance(stage.state.person, Waiting)
+    assert isinstance(stage.state.person.body, Measured)
 
 
 def test_a_probability_keeps_the_order_and_the_bounds() -> None:

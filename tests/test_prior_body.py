@@ -8,7 +8,7 @@ from staging import PERSON, RIG, observation, silhouettes, standing
 
 from common.body.body import Vector
 from common.body.proportions import stature, thesis_bdp
-from integrator.prior_body import _crown_m, prior
+from integrator.measuring.prior_body import _crown_m, prior
 
 
 @pytest.mark.parametrize("views", [(0, 1), (0,), (1,)], ids=["both", "1", "2"])

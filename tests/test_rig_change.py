@@ -10,6 +10,7 @@ from common.config.settings import Settings
 from common.rig.camera import Rig, paper_rig
 from integrator.live_rig.rig_change import set_back, with_rig, word_of
 from integrator.live_rig.rig_job import Solved, Trusted
+from integrator.measuring.known_body import Measured, Unmeasured
 
 
 def larger(rig: Rig, times: float) -> Rig:
@@ -26,18 +27,17 @@ def stage(monkeypatch: pytest.MonkeyPatch) -> Stage:
 
 def test_a_measured_body_is_measured_again_by_the_new_rig(stage: Stage) -> None:
     stage.show([opening()] * 8)
-    before = stage.state.opening
-    assert before.measured
-    told = with_rig(stage.state, larger(RIG, 1.2)).opening
-    assert told.measured
-    assert told.bdp is not None
+    before = stage.state.person.body
+    assert isinstance(before, Measured)
+    told = with_rig(stage.state, larger(RIG, 1.2)).person.body
+    assert isinstance(told, Measured)
     assert told.bdp.r_upper_leg.height == pytest.approx(1.2 * PERSON.r_upper_leg.height, rel=0.06)
 
 
 def test_a_body_that_was_not_measured_has_the_stature_that_the_rig_is_told_by(stage: Stage) -> None:
     stage.show([standing()] * 3)
-    told = with_rig(stage.state, larger(RIG, 1.5)).opening
-    assert told.bdp is not None
+    told = with_rig(stage.state, larger(RIG, 1.5)).person.body
+    assert isinstance(told, Unmeasured)
     assert stature(told.bdp) == pytest.approx(Settings().body.stature_m)
 
 

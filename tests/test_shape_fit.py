@@ -13,7 +13,7 @@ from common.raster.similarity import similarity
 from common.rig.camera import paper_rig
 from integrator.fit import shape_fit
 from integrator.fit.silhouette_pair import silhouettes_of
-from integrator.opening_posture import Opening, Sample
+from integrator.measuring.known_body import Known, Sample, Unmeasured
 
 SIZE = (320, 240)
 RIG = paper_rig(SIZE, (400.0, 400.0), (4.5, 4.5))
@@ -61,19 +61,20 @@ def test_a_body_that_fits_is_left_alone() -> None:
     assert shape_fit.fitted(PRIOR, RIG, (Sample(pose, seen_as(PRIOR, pose)),)) == PRIOR
 
 
-@pytest.mark.parametrize("known", [Opening(bdp=PRIOR, bodies=(PRIOR,)), Opening(bdp=None)])
-def test_a_body_that_is_being_measured_or_is_unknown_is_not_fitted(known: Opening) -> None:
-    pose = standing()
+def test_a_body_that_is_being_measured_is_not_fitted() -> None:
+    known, pose = Unmeasured(PRIOR, bodies=(PRIOR,)), standing()
     assert shape_fit.step(known, RIG, seen_as(slim(), pose), pose) is known
 
 
 def test_a_person_partly_outside_tells_no_widths() -> None:
-    known, pose = Opening(bdp=PRIOR), standing()
+    known: Known = Unmeasured(PRIOR)
+    pose = standing()
     assert shape_fit.step(known, RIG, seen_as(slim(), pose, cut=True), pose) is known
 
 
 def test_samples_are_few_and_apart() -> None:
-    known, pose = Opening(bdp=PRIOR), standing()
+    known: Known = Unmeasured(PRIOR)
+    pose = standing()
     seen = seen_as(PRIOR, pose)
     taken = []
     for frame in range(100):
@@ -87,7 +88,8 @@ def test_samples_are_few_and_apart() -> None:
 
 def test_an_outline_that_the_body_explains_badly_tells_no_widths() -> None:
     """Something else belongs to it, or the pose is wrong."""
-    known, pose = Opening(bdp=PRIOR), standing()
+    known: Known = Unmeasured(PRIOR)
+    pose = standing()
     elsewhere = pose.copy()
     elsewhere[0] += 0.4
     assert shape_fit.step(known, RIG, seen_as(slim(), pose), elsewhere) is known
@@ -133,7 +135,8 @@ def test_a_fit_is_the_sum_of_similarities_over_samples_and_views() -> None:
 
 def test_a_body_is_sampled_once_it_fits_and_then_every_so_many_frames() -> None:
     """A first time at once, and the last time with all of the samples."""
-    pose, known = standing(), Opening(bdp=PRIOR)
+    pose = standing()
+    known: Known = Unmeasured(PRIOR)
     fits, cut = seen_as(slim(), pose), seen_as(slim(), pose, cut=True)
     assert shape_fit.step(known, RIG, cut, pose) == known
     far = pose.copy()

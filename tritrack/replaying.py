@@ -20,8 +20,9 @@ from common.bus.rate import wait_until
 from common.config.part_settings import BusSettings
 from common.method import METHODS
 from common.npz_file import Facts
-from integrator import merge, merge_state, opening_posture
+from integrator import merge, merge_state
 from integrator.live_rig.rig_change import set_back, with_rig
+from integrator.measuring import opening_posture
 from integrator.merge_state import Start
 from runtime.store.other_run import refuse_other, run_of
 from runtime.store.recording import Recording, read_recording

@@ -15,7 +15,7 @@ from integrator.fit import visual_hull
 from integrator.fit.silhouette_pair import poorest
 from integrator.landmarks import landmark_fusion
 from integrator.landmarks.landmark_rays import rays_of
-from integrator.prior_body import prior
+from integrator.measuring.prior_body import prior
 from integrator.proposal import pose_proposal
 from integrator.proposal.pose_proposal import Memory, PoseProposal
 from integrator.rig.best_pair import Places, Two, two_of

@@ -23,7 +23,7 @@ from common.raster.bits import Bits
 from common.raster.kernel import match
 from common.rig.camera import Rig
 from integrator.fit.silhouette_pair import silhouettes_of
-from integrator.opening_posture import Opening, Sample
+from integrator.measuring.known_body import Known, Sample
 
 GROUPS: Final[tuple[tuple[tuple[str, ...], tuple[str, ...]], ...]] = (
     (("torso",), ("long_radius",)),
@@ -58,7 +58,7 @@ APART: Final = 12
 """Frames between two samples: most of a second, in which a pose changes."""
 
 
-def step(opening: Opening, rig: Rig, seen: Seen, pose: Vector) -> Opening:
+def step(opening: Known, rig: Rig, seen: Seen, pose: Vector) -> Known:
     """Process one instant with a person in view.
 
     The body is fitted to the first instant that shows the whole person in both views, and once more
@@ -73,7 +73,7 @@ def step(opening: Opening, rig: Rig, seen: Seen, pose: Vector) -> Opening:
     """
     first, second = seen
     done = opening.under_way or len(opening.samples) == MOST_SAMPLES
-    if done or first is None or second is None or opening.bdp is None:
+    if done or first is None or second is None:
         return opening
     if first.cut or second.cut:
         return opening

@@ -62,7 +62,7 @@ class LiveCalibration:
             late_s: Known delay of view 2.
             solver: Finds rigs; None: in a child process.
         """
-        search = rig_search.init(state.smooth.period_s, state.settings.body.stature_m)
+        search = rig_search.init(state.period_s, state.settings.body.stature_m)
         self.looking = Looking(search._replace(late_s=late_s), looks, late_s)
         self._solver = solver or RigSolver()
 
@@ -119,7 +119,7 @@ class LiveCalibration:
         moved = state.stands.moved
         if not moved or state.rig is None or state.settings.trust_calibration:
             return state
-        self._tell(rig_change.word_of_moved(state))
+        self._tell(rig_change.word_of_moved(state.rig, state.stands))
         was_sure = not state.stands.unconfirmed
         before, state = state.rig, rig_change.with_rig(state, turned_rig(state.rig, state.stands))
         at = self.looking = self.looking._replace(looks=True)

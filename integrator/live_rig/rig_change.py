@@ -3,14 +3,14 @@
 import msgspec
 
 from calibration.gate import moved_cameras, rig_agreement
-from common.body.body import ANGLE_NAMES
+from calibration.gate.moved_cameras import MovedCameras
 from common.bus.messages import View, ViewerNumber
 from common.rig.camera import Rig
 from common.rig.turned_camera import angle_deg
-from integrator import opening_posture
 from integrator.live_rig.rig_job import Solved
+from integrator.measuring import opening_posture
 from integrator.merge_state import State, facing_at_start
-from integrator.pose import smoothing
+from integrator.person import Waiting
 
 
 def with_rig(state: State, rig: Rig) -> State:
@@ -20,22 +20,20 @@ def with_rig(state: State, rig: Rig) -> State:
     measurement of the opening posture, recomputed by the new rig, or else the stature that the rig
     is based on. Where a camera keeps its position the world stays too, and with it all of the body.
     """
-    body, opening, source = state.settings.body, state.opening, state.scale_source
+    before, source = state.person, state.scale_source
+    settings, body = state.settings.body, before.body
     if state.rig is None or not is_same_world(state.rig, rig):
         source = "person"
-        opening = opening_posture.elsewhere(
-            state.opening, rig, body.opening_frames, state.method, body.stature_m
+        body = opening_posture.elsewhere(
+            body, rig, settings.opening_frames, state.method, settings.stature_m
         )
     return state._replace(
         rig=rig,
         scale_source=source,
         calibration=state.calibration + 1,
         proposes=True,
-        smooth=smoothing.init(len(ANGLE_NAMES), state.smooth.period_s),
-        opening=opening,
-        found=None,
+        person=Waiting(body, before.ever_confirmed),
         facing=facing_at_start(len(rig.cameras)),
-        doubted=0,
         agreement=rig_agreement.State(),
         stands=moved_cameras.told_by(state.stands, state.rig, rig),
     )
@@ -72,15 +70,11 @@ def word_of(solved: Solved, late_s: float, moved: tuple[ViewerNumber, ...] = ())
     )
 
 
-def word_of_moved(state: State) -> str:
-    """The report of cameras that have just been moved."""
-    assert state.rig is not None
-    stands = state.stands
+def word_of_moved(rig: Rig, stands: MovedCameras) -> str:
+    """The report of cameras of a rig that have just been moved."""
     by_deg = [
         angle_deg(
-            moved_cameras.turn_since(
-                state.rig.cameras[n - 1], stands.of_rig[n - 1], stands.now[n - 1]
-            )
+            moved_cameras.turn_since(rig.cameras[n - 1], stands.of_rig[n - 1], stands.now[n - 1])
         )
         for n in stands.moved
     ]

@@ -32,16 +32,17 @@ def best_pair(before: Places | None, rig: Rig, seen: Seen) -> Places:
         rig: V cameras without distortion; a rig's only camera is both.
         seen: The person in each view, without distortion; None where it has none.
     """
-    shown = [n for n, person in enumerate(seen) if person is not None]
-    whole = {n for n in shown if not _is_cut(seen[n])}
+    shown = {n: person for n, person in enumerate(seen) if person is not None}
+    whole = {n for n, person in shown.items() if not person.cut}
     if len(rig.cameras) <= 2:
         return 0, len(rig.cameras) - 1
     if not shown or whole.issuperset(before or (-1,)):
         return before or (0, 1)
     if len(shown) == 1:
-        other = next(n for n in (*(before or ()), 0, 1) if n != shown[0])
-        return min(shown[0], other), max(shown[0], other)
-    lines = {n: _sight_line(seen[n], rig.cameras[n]) for n in shown}
+        (own,) = shown
+        other = next(n for n in (*(before or ()), 0, 1) if n != own)
+        return min(own, other), max(own, other)
+    lines = {n: _sight_line(person, rig.cameras[n]) for n, person in shown.items()}
     worth = {
         pair: _sine(lines[pair[0]], lines[pair[1]])
         * CUT ** len(set(pair) - whole)
@@ -51,13 +52,8 @@ def best_pair(before: Places | None, rig: Rig, seen: Seen) -> Places:
     return max(worth, key=lambda pair: worth[pair])
 
 
-def _is_cut(person: Observation | None) -> bool:
-    return person is None or person.cut
-
-
-def _sight_line(person: Observation | None, camera: Camera) -> Vector:
-    """Direction to the middle of a silhouette, (3,) unit length, world."""
-    assert person is not None
+def _sight_line(person: Observation, camera: Camera) -> Vector:
+    """Towards the middle of a silhouette, (3,) unit length, world."""
     return ray(camera, centroid_px(unpack(person)))
 
 
@@ -71,6 +67,11 @@ class Two(NamedTuple):
     rig: Rig
     """Two cameras; the only one of a rig twice."""
     seen: TwoSeen
+
+    @property
+    def first_seen(self) -> tuple[int, Observation]:
+        """Place and person of the first view that shows one, as one at least does."""
+        return next((n, person) for n, person in enumerate(self.seen) if person is not None)
 
 
 def two_of(rig: Rig, seen: Seen, pair: Places) -> Two:

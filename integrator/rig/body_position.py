@@ -52,16 +52,19 @@ def place_of(rig: Rig, roots_px: Roots, before_m: Vector, facade: int) -> Vector
         roots_px: The navel in each view; None where it has none.
         before_m: Previous place of the navel, (3,).
         facade: 0 or 1: which view sees the facade.
+
+    Raises:
+        ValueError: When neither view has it.
     """
     first, second = roots_px
     if first is not None and second is not None:
         place = _where_rays_meet(rig, (first, second), facade)
         if np.isfinite(scales_at(rig, place)).all():
             return place
-    believed = facade if roots_px[facade] is not None else 1 - facade
-    pixel = roots_px[believed]
-    assert pixel is not None
-    return _at_depth(rig.cameras[believed], pixel, before_m)
+    for believed in (facade, 1 - facade):
+        if (pixel := roots_px[believed]) is not None:
+            return _at_depth(rig.cameras[believed], pixel, before_m)
+    raise ValueError("no view has the navel")
 
 
 def upright_place_of(rig: Rig, root_px: Pixel, above_px: Pixel) -> Vector:

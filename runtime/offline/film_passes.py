@@ -28,8 +28,8 @@ from common.video.clip_facts import Clip
 from common.video.clip_sources import ClipError
 from common.video.pictures import Ending, Reader
 from integrator import merge, merge_state
+from integrator.measuring.known_body import Opening, Unknown, Unmeasured
 from integrator.merge_state import Start, State
-from integrator.opening_posture import Opening
 from integrator.rig.tilted_camera import LEVEL, TILTS_DEG, camera_of_sights
 from integrator.single.sight import Annotations
 from runtime.offline.film_smoothing import calmed
@@ -194,11 +194,12 @@ def _begun(reports: Sequence[View], film: FilmFacts) -> tuple[track.State, State
     standing = standing_of([one.rows for one in stands], [one.whole for one in stands])
     nothing = np.zeros((size[1], size[0], 3), np.uint8)
     viewer = track.init(_setup(film), learn([nothing]), standing=standing)
-    stature_m, opening = settings.body.stature_m, Opening()
+    stature_m = settings.body.stature_m
+    opening: Opening = Unknown()
     if camera is None:
         tilts_deg = LEVEL if film.method.stick_lifting else TILTS_DEG
         camera = camera_of_sights(size, _sights(stands, size), stature_m, tilts_deg)
-        opening = Opening(bdp=thesis_bdp(stature_m))
+        opening = Unmeasured(thesis_bdp(stature_m))
     rig = Rig(*size, (camera, camera))
     source: ScaleSource = "assumed" if film.camera is None else "calibrated"
     state = merge_state.init(

@@ -26,8 +26,9 @@ from common.video.clip_sources import ClipError
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
 from common.video.frame_cache import Reel
-from integrator import diagnostics, merge_state, opening_posture
+from integrator import diagnostics, merge_state
 from integrator.frame_numbers import frame_times
+from integrator.measuring import opening_posture
 from integrator.merge_state import Start
 from runtime.moved_facts import moved_facts
 from runtime.offline.film_tracking import Film, Heard, follow_clip, unseen

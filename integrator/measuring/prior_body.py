@@ -1,5 +1,6 @@
 """The body before its opening posture: as tall as the silhouettes show (T4)."""
 
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
@@ -37,7 +38,8 @@ def prior(rig: Rig, seen: Seen) -> Bdp:
         and np.isfinite(height := _height_m(person, camera, place))
     ]
     low, high = STATURES_M
-    if None not in seen and low <= (crown := _crown_m(rig, seen, place)) <= high:
+    people = [person for person in seen if person is not None]
+    if len(people) == len(seen) and low <= (crown := _crown_m(rig, people, place)) <= high:
         heights.append(crown)
     return thesis_bdp(min(high, max(low, min(heights))) if heights else USUAL_M)
 
@@ -56,14 +58,13 @@ def _height_m(person: Observation, camera: Camera, place: Vector) -> float:
     return float((along.max() + 1.0 - along.min()) / px_per_m(camera, place))
 
 
-def _crown_m(rig: Rig, seen: Seen, place: Vector) -> float:
+def _crown_m(rig: Rig, people: Sequence[Observation], place: Vector) -> float:
     """Height above the floor of the highest point of both silhouettes; inf where they show none.
 
     A silhouette that touches the border of a picture may go on beyond it.
     """
     tops: list[Pixel] = []
-    for person, camera in zip(seen, rig.cameras, strict=True):
-        assert person is not None
+    for person, camera in zip(people, rig.cameras, strict=True):
         along, pixels = _upwards(person, camera, place)
         column, row = pixels[along.argmax()]
         if not (0 < column < person.width - 1 and 0 < row < person.height - 1):

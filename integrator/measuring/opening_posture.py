@@ -1,17 +1,18 @@
 """Universal BDPs from the opening posture: the median of several frames of both views (4.2)."""
 
-from typing import Final, NamedTuple
+from typing import Final
 
 import msgspec
 import numpy as np
 
 from common.body.body import Bdp, Vector, body_of_lengths
-from common.body.observation import Measure, Observation
+from common.body.observation import Measure
 from common.body.proportions import thesis_bdp
 from common.bus.instant import Seen
 from common.method import Method
 from common.rig.camera import Rig
-from integrator.prior_body import prior
+from integrator.measuring.known_body import Known, Measured, Opening, Unknown, Unmeasured
+from integrator.measuring.prior_body import prior
 from integrator.rig.body_position import scales_at, sees_flank, upright_place_of
 
 LEG_KEPT: Final = (0.85, 1.05)
@@ -19,50 +20,17 @@ LEG_KEPT: Final = (0.85, 1.05)
 believed; otherwise the calibration's floor is wrong."""
 
 
-class Sample(NamedTuple):
-    """A pose, and the observations that it was found from."""
-
-    pose: Vector
-    seen: tuple[Observation, Observation]
-
-
-class Opening(NamedTuple):
-    """The body, and the progress of its measurement."""
-
-    bdp: Bdp | None = None
-    """Universal BDPs, metres: a prior until measured; None until a person is seen."""
-    measured: bool = False
-    measured_at_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    """Place of the navel in the opening posture."""
-    bodies: tuple[Bdp, ...] = ()
-    """Universal BDPs of the frames accepted so far."""
-    places_m: tuple[tuple[float, float, float], ...] = ()
-    refused: int = 0
-    """Frames since the last accepted one."""
-    measures: tuple[tuple[Measure, Measure], ...] = ()
-    """Measures of the accepted frames, in pixels of both views."""
-    samples: tuple[Sample, ...] = ()
-    """The instants to whose silhouettes the prior was fitted; empty where it was not."""
-    unsampled: int = 0
-    """Frames since the last of them."""
-
-    @property
-    def under_way(self) -> bool:
-        """A person holds the opening posture, and its measurement is incomplete."""
-        return bool(self.bodies) and not self.measured
-
-
-def init(body: Bdp | None) -> Opening:
+def init(body: Bdp | None) -> Unknown | Measured:
     """The initial state: unknown, or a body measured before, whose navel follows from its legs."""
     if body is None:
-        return Opening()
+        return Unknown()
     legs_m = body.r_upper_leg.height + body.r_lower_leg.height
-    return Opening(body, True, (0.0, legs_m, 0.0))
+    return Measured(body, (0.0, legs_m, 0.0))
 
 
 def step(
     opening: Opening, rig: Rig, seen: Seen, due: int, method: Method
-) -> tuple[Opening, Vector | None]:
+) -> tuple[Known, Vector | None]:
     """Process one instant; the navel's place where it is settled now, else None.
 
     After `due` frames without the posture, measuring begins anew.
@@ -74,10 +42,10 @@ def step(
         due: Number of accepted frames whose median makes the body.
         method: The departures from the print.
     """
-    if opening.bdp is None:
-        opening = opening._replace(bdp=prior(rig, seen))
-    if opening.measured:
+    if isinstance(opening, Measured):
         return opening, None
+    if isinstance(opening, Unknown):
+        opening = Unmeasured(prior(rig, seen))
     front, side = (None if person is None else person.measure for person in seen)
     if front is None or side is None or not _shows_both(rig, front, side):
         broken_off = opening.refused + 1 >= due
@@ -90,7 +58,7 @@ def step(
     return _settled(_measured(opening, rig, front, side), due, method)
 
 
-def elsewhere(opening: Opening, rig: Rig, due: int, method: Method, stature_m: float) -> Opening:
+def elsewhere(opening: Opening, rig: Rig, due: int, method: Method, stature_m: float) -> Known:
     """The body, recomputed by a new rig.
 
     Args:
@@ -100,10 +68,10 @@ def elsewhere(opening: Opening, rig: Rig, due: int, method: Method, stature_m: f
         method: As for `step`.
         stature_m: Stature for a body that was not measured.
     """
-    if opening.measured and not opening.measures:
+    if isinstance(opening, Measured) and not opening.measures:
         return opening
-    told = Opening(bdp=thesis_bdp(stature_m))
-    for front, side in opening.measures:
+    told = Unmeasured(thesis_bdp(stature_m))
+    for front, side in () if isinstance(opening, Unknown) else opening.measures:
         if _shows_both(rig, front, side):
             told = _measured(told, rig, front, side)
     return _settled(told, due, method)[0]
@@ -117,7 +85,7 @@ def _shows_both(rig: Rig, front: Measure, side: Measure) -> bool:
     return bool(np.isfinite(scales_at(rig, place)).all()) and sees_flank(rig, place)
 
 
-def _measured(opening: Opening, rig: Rig, front: Measure, side: Measure) -> Opening:
+def _measured(opening: Unmeasured, rig: Rig, front: Measure, side: Measure) -> Unmeasured:
     """The state with one more accepted frame."""
     place = upright_place_of(rig, front.centre_px, side.centre_px)
     x, y, z = (float(value) for value in place)
@@ -129,7 +97,7 @@ def _measured(opening: Opening, rig: Rig, front: Measure, side: Measure) -> Open
     )
 
 
-def _settled(opening: Opening, due: int, method: Method) -> tuple[Opening, Vector | None]:
+def _settled(opening: Unmeasured, due: int, method: Method) -> tuple[Known, Vector | None]:
     """The medians, once enough frames were accepted."""
     if len(opening.bodies) < due:
         return opening, None
@@ -139,7 +107,7 @@ def _settled(opening: Opening, due: int, method: Method) -> tuple[Opening, Vecto
     body = body_of_lengths(lengths.tolist())
     if method.legs_to_floor:
         body = _on_the_floor(body, y)
-    return Opening(body, True, (x, y, z), measures=opening.measures), place
+    return Measured(body, (x, y, z), opening.measures), place
 
 
 def universal_bdp(front: Measure, side: Measure, px_per_m_1: float) -> Bdp:

@@ -1,0 +1,70 @@
+"""A person's body as far as it is known: not at all, a prior, or measured."""
+
+from typing import NamedTuple
+
+from common.body.body import Bdp, Vector
+from common.body.observation import Measure, Observation
+
+
+class Sample(NamedTuple):
+    """A pose, and the observations that it was found from."""
+
+    pose: Vector
+    seen: tuple[Observation, Observation]
+
+
+class Unknown(NamedTuple):
+    """No person was seen yet."""
+
+    @property
+    def bdp(self) -> None:
+        """No lengths."""
+
+
+class Unmeasured(NamedTuple):
+    """A prior body, and the progress of its measurement."""
+
+    bdp: Bdp
+    """Universal BDPs, metres."""
+    bodies: tuple[Bdp, ...] = ()
+    """Universal BDPs of the frames accepted so far."""
+    places_m: tuple[tuple[float, float, float], ...] = ()
+    """Places of the navel in them."""
+    refused: int = 0
+    """Frames since the last accepted one."""
+    measures: tuple[tuple[Measure, Measure], ...] = ()
+    """Measures of the accepted frames, in pixels of both views."""
+    samples: tuple[Sample, ...] = ()
+    """The instants to whose silhouettes the prior was fitted; empty where it was not."""
+    unsampled: int = 0
+    """Frames since the last of them."""
+
+    @property
+    def under_way(self) -> bool:
+        """A person holds the opening posture, and its measurement is incomplete."""
+        return bool(self.bodies)
+
+
+class Measured(NamedTuple):
+    """A body measured in the opening posture."""
+
+    bdp: Bdp
+    """Universal BDPs, metres."""
+    measured_at_m: tuple[float, float, float]
+    """Place of the navel in the opening posture."""
+    measures: tuple[tuple[Measure, Measure], ...] = ()
+    """As of `Unmeasured`; empty of a body that was known before the run."""
+    samples: tuple[Sample, ...] = ()
+    """As of `Unmeasured`, since it was measured."""
+    unsampled: int = 0
+
+    @property
+    def under_way(self) -> bool:
+        """It is over."""
+        return False
+
+
+Known = Unmeasured | Measured
+"""A body with lengths."""
+Opening = Unknown | Known
+"""A body at any stage of its measurement."""
