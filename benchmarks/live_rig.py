@@ -27,7 +27,7 @@ from common.video.clips import open_clip
 from integrator import merge, merge_state
 from integrator.live_rig import rig_search
 from integrator.live_rig.rig_change import set_back, with_rig
-from integrator.live_rig.rig_job import Solved, solved
+from integrator.live_rig.rig_job import Solution, solved
 from integrator.merge_state import Start
 from runtime.offline.frame_pairs import instants, openings
 from runtime.offline.lockstep import Decoders, track_clip
@@ -54,7 +54,7 @@ def live_bodies(settings: Settings, decoders: Decoders) -> list[Body]:
     search = rig_search.init(period_s, settings.body.stature_m)
     guide: Guide | None = None
     bodies: list[Body] = []
-    coming: list[tuple[float, Solved]] = []
+    coming: list[tuple[float, Solution]] = []
     with outside_sources(settings, clip.views) as sources:
         for frames in instants(clip, decoders.of, sources):
             reports: dict[int, View] = {}
@@ -68,9 +68,9 @@ def live_bodies(settings: Settings, decoders: Decoders) -> list[Body]:
             if job is not None:
                 coming.append((body.captured_s + WAIT_S, solved(job)))
             if coming and body.captured_s >= coming[0][0]:
-                search, is_taken = rig_search.answered(search, coming.pop(0)[1])
-                if is_taken and search.rig is not None:
-                    state = with_rig(state, search.rig)
+                search, taken = rig_search.answered(search, coming.pop(0)[1])
+                if taken is not None:
+                    state = with_rig(state, taken.rig)
                     print(f"  {body.captured_s:.1f} s: rig {state.calibration}")
     return bodies
 

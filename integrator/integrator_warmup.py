@@ -1,5 +1,6 @@
 """Synthetic reports, merged once to compile and load everything before the first real ones."""
 
+from collections.abc import Sequence
 from typing import Final
 
 import msgspec
@@ -35,13 +36,12 @@ def warm_up(settings: Settings, size: tuple[int, int]) -> None:
         for index in range(4):
             first, second = (_view(viewer, index, size, known) for viewer in VIEWERS)
             state, _, _ = merge.step(state, Instant((first, second if index < 3 else None)))
-    _clear(known, Instant((_view(1, 0, size, known), _view(2, 0, size, known))))
+    _clear(known, [_view(viewer, 0, size, known) for viewer in VIEWERS])
 
 
-def _clear(rig: Rig, instant: Instant) -> None:
+def _clear(rig: Rig, views: Sequence[View]) -> None:
     """Clear silhouettes, one of them with clutter."""
-    first, second = instant.detections
-    assert first is not None
+    first, second = (person for view in views for person in view.people)
     clutter = unpack(first)
     clutter[: len(clutter) // 20, : len(clutter) // 20] = True
     visual_hull.cleaned(rig, (msgspec.structs.replace(first, silhouette=pack(clutter)), second))
@@ -59,5 +59,5 @@ def _view(viewer: ViewerNumber, index: int, size: tuple[int, int], rig: Rig) -> 
     view = silhouette_view(viewer, mask, index, float(index))
     places_px = project(camera, joints(body, pose)).tolist()
     shown = Landmarks(tuple((x, y) for x, y in places_px), (0.9,) * len(JOINT_NAMES))
-    assert view.person is not None
-    return with_person(view, msgspec.structs.replace(view.person, landmarks=shown))
+    (person,) = view.people
+    return with_person(view, msgspec.structs.replace(person, landmarks=shown))

@@ -21,7 +21,7 @@ from common.video.clip_facts import Clip, ClipView, Meta
 from integrator import merge, merge_state
 from integrator.live_rig import live_calibration
 from integrator.live_rig.live_calibration import LiveCalibration, is_by_person
-from integrator.live_rig.rig_job import Job, Solved, Trusted
+from integrator.live_rig.rig_job import Job, Solution, Trusted, Unsolved
 from integrator.live_rig.rig_search import ASKS_S
 from integrator.merge_state import Start, State
 from runtime.live.free_ports import free_settings
@@ -34,12 +34,12 @@ class Solver:
 
     def __init__(self) -> None:
         self.jobs: list[Job] = []
-        self.said: Solved | None = None
+        self.said: Solution | None = None
 
     def ask(self, job: Job) -> None:
         self.jobs.append(job)
 
-    def answer(self) -> Solved | None:
+    def answer(self) -> Solution | None:
         said, self.said = self.said, None
         return said
 
@@ -83,12 +83,12 @@ def test_a_rig_that_is_taken_is_told_with_its_moment_and_the_frames_wait_for_not
 @pytest.mark.parametrize(
     ("said", "why"),
     [
-        (Solved(refusal="nobody there"), "the person tells none (nobody there)"),
+        (Unsolved("nobody there"), "the person tells none (nobody there)"),
         (None, "was not found in time"),
     ],
 )
 def test_a_run_whose_person_told_no_rig_says_at_its_end_why(
-    solver: Solver, said: Solved | None, why: str
+    solver: Solver, said: Solution | None, why: str
 ) -> None:
     state = begun()
     with LiveCalibration(state, looks=True) as calibration:

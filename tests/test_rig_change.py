@@ -73,7 +73,7 @@ def test_what_is_said_of_a_new_rig_names_what_it_is_known_to(
 ) -> None:
     by = Trusted(12.4, ())
     was = None if before is None else Trusted(before, ())
-    said = word_of(Solved(turn_error_deg=1.6, trust=by, before=was), late_s)
+    said = word_of(Solved(RIG, by, was, turn_error_deg=1.6), late_s)
     assert said.startswith(f"{begins}: views 12 mm apart, camera 2 known to 2 degrees")
     assert late in said
     assert ("camera 2 -67 ms late" in said) is bool(late_s)
@@ -85,6 +85,6 @@ def test_what_is_said_of_a_new_rig_names_what_it_is_known_to(
 def test_what_is_said_of_a_camera_that_was_moved_names_it(
     moved: tuple[ViewerNumber, ...], named: str
 ) -> None:
-    solved = Solved(trust=Trusted(12.4, ()), before=Trusted(41.0, ()))
+    solved = Solved(RIG, Trusted(12.4, ()), Trusted(41.0, ()))
     said = word_of(solved, 0.2, moved)
     assert said == f"{named} placed anew by the person: views 12 mm apart"

@@ -11,7 +11,15 @@ from wild_rigs import Trial, filmed
 from calibration.tracks.joint_tracks import JointTrack
 from common.rig.camera import paper_rig
 from integrator.live_rig import rig_solver
-from integrator.live_rig.rig_job import Job, Solved, packed, solved, track_of_bytes
+from integrator.live_rig.rig_job import (
+    Job,
+    Solution,
+    Solved,
+    Unsolved,
+    packed,
+    solved,
+    track_of_bytes,
+)
 from integrator.live_rig.rig_solver import RigSolver
 from synth.motion.motions import performance
 from synth.person.people import person
@@ -37,7 +45,7 @@ def walking() -> Trial:
     return Trial(PAPER, sighting, someone.measures["stature_m"], 0.0)
 
 
-def answer_of(solver: RigSolver, within_s: float) -> Solved | None:
+def answer_of(solver: RigSolver, within_s: float) -> Solution | None:
     until_s = time.monotonic() + within_s
     answer = None
     while answer is None and time.monotonic() < until_s:
@@ -54,7 +62,9 @@ def test_a_track_comes_back_from_its_bytes() -> None:
 
 
 def test_a_job_of_too_little_is_refused_with_the_reason() -> None:
-    assert "in 0 moments only" in solved(FEW).refusal
+    answer = solved(FEW)
+    assert isinstance(answer, Unsolved)
+    assert "in 0 moments only" in answer.refusal
 
 
 @pytest.mark.parametrize(
@@ -73,7 +83,7 @@ def test_a_search_that_cannot_be_begun_is_answered(
     solver = RigSolver()
     solver.ask(FEW)
     answer = answer_of(solver, 5.0)
-    assert answer is not None
+    assert isinstance(answer, Unsolved)
     assert str(error) in answer.refusal
 
 
@@ -95,7 +105,7 @@ def test_the_process_finds_what_is_found_here_and_asking_waits_for_nothing(
     found = answer_of(solver, 100.0)
     with threadpool_limits(1):
         assert found == solved(job)
-    assert found is not None
+    assert isinstance(found, Solved)
     assert found.before is not None
 
 
@@ -105,10 +115,10 @@ def test_a_process_that_is_stuck_or_dies_is_an_answer_too(monkeypatch: pytest.Mo
     solver = RigSolver()
     solver.ask(FEW)
     answer = answer_of(solver, 30.0)
-    assert answer is not None
+    assert isinstance(answer, Unsolved)
     assert "it gave nothing for 0.2 s" in answer.refusal
     monkeypatch.setattr(rig_solver, "MODULE", "integrator.no_such_module")
     solver.ask(FEW)
     answer = answer_of(solver, 30.0)
-    assert answer is not None
+    assert isinstance(answer, Unsolved)
     assert "is gone" in answer.refusal

@@ -102,16 +102,15 @@ class LiveCalibration:
         """The state with a rig found meanwhile, if any; turned, if a camera was."""
         state = self._after_moves(state)
         self._look_where_doubted(state)
-        solved = self._solver.answer()
-        if solved is None:
+        answer = self._solver.answer()
+        if answer is None:
             return state
-        search, is_taken = rig_search.answered(self.looking.search, solved)
+        search, taken = rig_search.answered(self.looking.search, answer)
         self.looking = self.looking._replace(search=search)
-        if is_taken:
-            assert search.rig is not None
+        if taken is not None:
             self.looking = self.looking._replace(late_s=search.late_s, stays="")
-            state = rig_change.with_rig(state, search.rig)
-            self._tell(rig_change.word_of(solved, search.late_s, search.moved))
+            state = rig_change.with_rig(state, taken.rig)
+            self._tell(rig_change.word_of(taken, search.late_s, search.moved))
         return state
 
     def _after_moves(self, state: State) -> State:

@@ -57,7 +57,6 @@ def set_back(view: View, late_s: float) -> View:
 
 def word_of(solved: Solved, late_s: float, moved: tuple[ViewerNumber, ...] = ()) -> str:
     """The report of a change, of moved cameras or of all."""
-    assert solved.trust is not None
     known = f"views {solved.trust.apart_mm:.0f} mm apart"
     if moved:
         return f"{cameras_named(moved)} placed anew by the person: {known}"

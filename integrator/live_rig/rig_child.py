@@ -1,6 +1,6 @@
 """The child process that finds rigs.
 
-Each line is a Job, as base64 of its MessagePack; each answer a Solved, preceded by its length. It
+Each line is a Job, as base64 of its MessagePack; each answer a Solution, preceded by its length. It
 runs at low priority: it gets a third of the run's processes' time where there is not enough.
 """
 

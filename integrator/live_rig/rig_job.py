@@ -51,21 +51,31 @@ class Trusted(msgspec.Struct, frozen=True):
     odd: tuple[str, ...]
 
 
-class Solved(msgspec.Struct, frozen=True):
-    """A rig, or why there is none."""
+class Solved(msgspec.Struct, frozen=True, tag=True):
+    """A rig."""
 
-    refusal: str = ""
-    rig: Rig | None = None
+    rig: Rig
+    trust: Trusted
+    """Assessment of the rig by the observations that it was found from."""
+    before: Trusted | None = None
+    """The same for the rig in use; None where none is in use, or too little is seen for it."""
     late_s: float = 0.0
     """Delay of view 2."""
     gap_mm: float = 0.0
     """Median distance between the sight lines of one joint."""
     turn_error_deg: float = 0.0
     """Standard deviation of camera 2's yaw."""
-    trust: Trusted | None = None
-    """Assessment of the rig by the observations that it was found from."""
-    before: Trusted | None = None
-    """The same for the rig in use."""
+
+
+class Unsolved(msgspec.Struct, frozen=True, tag=True):
+    """No rig."""
+
+    refusal: str
+    """Why there is none."""
+
+
+Solution = Solved | Unsolved
+TOO_LITTLE: Final = Unsolved("too little is seen of anybody")
 
 
 def packed(row: Row) -> bytes:
@@ -83,7 +93,7 @@ def track_of_bytes(told: bytes) -> JointTrack:
     )
 
 
-def solved(job: Job) -> Solved:
+def solved(job: Job) -> Solution:
     """The rig that a job asks for: seconds of work."""
     from calibration.person.person_calibration import calibrated_by_person
 
@@ -94,18 +104,21 @@ def solved(job: Job) -> Solved:
     try:
         found = calibrated_by_person((sighting,), job.stature_m)
     except CalibrationError as error:
-        return Solved(refusal=str(error))
+        return Unsolved(str(error))
+    trust = _trusted(found.rig, sighting, job.period_s)
+    if trust is None:
+        return TOO_LITTLE
     return Solved(
         rig=found.rig,
         late_s=found.late_s[0],
         gap_mm=found.quality.gap_mm,
         turn_error_deg=found.quality.cameras[1].turn_error_deg[0],
-        trust=_trusted(found.rig, sighting, job.period_s),
+        trust=trust,
         before=None if job.rig is None else _trusted(job.rig, sighting, job.period_s),
     )
 
 
-def _placed(job: Job, rig: Rig, sighting: Sighting) -> Solved:
+def _placed(job: Job, rig: Rig, sighting: Sighting) -> Solution:
     """The rig with the moved cameras placed by the person."""
     from calibration.gate.moved_place import Stood, placed
 
@@ -114,14 +127,15 @@ def _placed(job: Job, rig: Rig, sighting: Sighting) -> Solved:
         first, second = (track_of_bytes(told) for told in job.stood.tracks)
         stood = Stood(job.stood.rig, Sighting(first, second, job.size_px))
     found = placed(rig, sighting, job.moved, job.late_s, stood)
-    if found is None:
-        return Solved(refusal="too little is seen of anybody")
+    trust = None if found is None else _trusted(found.rig, sighting, job.period_s)
+    if found is None or trust is None:
+        return TOO_LITTLE
     return Solved(
         rig=found.rig,
         late_s=job.late_s,
         gap_mm=found.gap_mm,
         turn_error_deg=found.turn_error_deg,
-        trust=_trusted(found.rig, sighting, job.period_s),
+        trust=trust,
         before=_trusted(rig, sighting, job.period_s),
     )
 

@@ -14,11 +14,11 @@ from calibration.tracks.joint_tracks import (
     row_of,
 )
 from calibration.tracks.lateness import LEAST_LATE
-from common.body.observation import Observation
+from common.body.observation import Box, Landmarks
 from common.bus.instant import Instant, TwoViews
-from common.bus.messages import ViewerNumber
+from common.bus.messages import View, ViewerNumber
 from common.rig.camera import Rig
-from integrator.live_rig.rig_job import Job, Solved, Stand, Trusted, packed
+from integrator.live_rig.rig_job import Job, Solution, Solved, Stand, Trusted, Unsolved, packed
 
 ASKS_S: Final = (4.0, 8.0, 16.0, 32.0)
 """Seconds of motion in both views after which a rig is requested."""
@@ -141,15 +141,17 @@ def step(state: State, views: TwoViews) -> tuple[State, Job | None]:
     return (state._replace(rows=((), ())) if state.asked == len(ASKS_S) else state), job
 
 
-def answered(state: State, solved: Solved) -> tuple[State, bool]:
-    """Process an answer: whether its rig is the run's from now on."""
+def answered(state: State, answer: Solution) -> tuple[State, Solved | None]:
+    """Process an answer; return it where its rig is the run's from now on."""
     if state.is_stale:
-        return state._replace(waits=False, is_stale=False), False
-    state = state._replace(waits=False, refusal=refusal_of(solved))
-    if state.refusal or not (state.rig is None or is_better(state, solved)):
-        return state, False
-    late_s = set_back_s(solved, state.period_s)
-    return state._replace(rig=solved.rig, late_s=late_s, taken=state.asked), True
+        return state._replace(waits=False, is_stale=False), None
+    state = state._replace(waits=False, refusal=refusal_of(answer))
+    if isinstance(answer, Unsolved) or state.refusal:
+        return state, None
+    if state.rig is not None and not is_better(state, answer):
+        return state, None
+    late_s = set_back_s(answer, state.period_s)
+    return state._replace(rig=answer.rig, late_s=late_s, taken=state.asked), answer
 
 
 def set_back_s(solved: Solved, period_s: float) -> float:
@@ -157,16 +159,16 @@ def set_back_s(solved: Solved, period_s: float) -> float:
     return solved.late_s if abs(solved.late_s) >= LEAST_LATE * period_s else 0.0
 
 
-def refusal_of(solved: Solved) -> str:
+def refusal_of(answer: Solution) -> str:
     """Why a rig is not believed, "" for a believable one."""
-    trust = solved.trust
-    if solved.refusal or trust is None:
-        return solved.refusal or "too little is seen of anybody"
+    if isinstance(answer, Unsolved):
+        return answer.refusal
+    trust = answer.trust
     odd = [word for word in trust.odd if word != "late"]
-    if odd or solved.gap_mm > MOST_GAP_MM:
+    if odd or answer.gap_mm > MOST_GAP_MM:
         return f"both views stay {trust.apart_mm:.0f} mm apart ({', '.join(odd) or 'gaps'})"
-    if solved.turn_error_deg > MOST_TURN_DEG:
-        return f"camera 2 is known to {solved.turn_error_deg:.0f} degrees only"
+    if answer.turn_error_deg > MOST_TURN_DEG:
+        return f"camera 2 is known to {answer.turn_error_deg:.0f} degrees only"
     return ""
 
 
@@ -187,7 +189,6 @@ def is_better(state: State, solved: Solved) -> bool:
     may seem to agree where it is a step aside.
     """
     new, old = solved.trust, solved.before
-    assert new is not None
     if old is None or not _holds(old) or (state.moved and not state.taken):
         return True
     gain_mm = old.apart_mm - new.apart_mm
@@ -203,35 +204,37 @@ def _holds(trust: Trusted) -> bool:
 def _gathered(state: State, views: TwoViews) -> State:
     """The state with an instant in which a person moves before both views."""
     first, second = views
-    if first is None or second is None or not (_is_sure(first.person) and _is_sure(second.person)):
+    seen = None if first is None else _sure_person(first)
+    if first is None or second is None or seen is None or _sure_person(second) is None:
         return _left_out(state, views)
-    assert first.person is not None
     size_px = (first.width, first.height)
     if size_px != (second.width, second.height):
         return state
     state = state._replace(size_px=size_px)
-    now_s, pose = first.captured_s, _pose(first.person)
-    if state.posed is None or float(np.abs(pose - state.posed[1]).mean()) >= MOVED:
-        state = state._replace(posed=(now_s, pose))
-    assert state.posed is not None
-    if now_s - state.posed[0] > STILL_S:
+    now_s, pose = first.captured_s, _pose(*seen)
+    posed = state.posed
+    if posed is None or float(np.abs(pose - posed[1]).mean()) >= MOVED:
+        posed = now_s, pose
+    state = state._replace(posed=posed)
+    if now_s - posed[0] > STILL_S:
         return _left_out(state, views)
     state = _with_row(_with_row(state, 0, row_of(first)), 1, row_of(second))
     return state._replace(moved_s=state.moved_s + state.period_s, gap=False)
 
 
-def _is_sure(person: Observation | None) -> bool:
-    seen = None if person is None else person.landmarks
-    if seen is None or not is_upright(seen):
-        return False
-    return float(np.mean(seen.confidence)) >= LEAST_SURE
+def _sure_person(view: View) -> tuple[Box, Landmarks] | None:
+    """Box and landmarks of an upright person whose landmarks are sure, if a view shows one."""
+    person = view.person
+    if person is None or person.landmarks is None or not is_upright(person.landmarks):
+        return None
+    is_sure = float(np.mean(person.landmarks.confidence)) >= LEAST_SURE
+    return (person.box, person.landmarks) if is_sure else None
 
 
-def _pose(person: Observation) -> NDArray[np.float64]:
+def _pose(box: Box, shown: Landmarks) -> NDArray[np.float64]:
     """(15, 2) the landmarks about their middle, in heights of the silhouette."""
-    assert person.landmarks is not None
-    joints_px = np.array(person.landmarks.joints_px)
-    return (joints_px - joints_px.mean(axis=0)) / max(person.box.bottom - person.box.top, 1)
+    joints_px = np.array(shown.joints_px)
+    return (joints_px - joints_px.mean(axis=0)) / max(box.bottom - box.top, 1)
 
 
 def _left_out(state: State, views: TwoViews) -> State:

@@ -11,7 +11,7 @@ import msgspec
 from calibration.tracks.lateness import LEAST_LATE
 from common.platform.platform import Broken, Child
 from common.platform.platforms import platform
-from integrator.live_rig.rig_job import LENGTH, Job, Solved, solved
+from integrator.live_rig.rig_job import LENGTH, Job, Solution, Solved, Unsolved, solved
 
 MODULE: Final = f"{__package__}.rig_child"
 STALL_S: Final = 120.0
@@ -23,14 +23,14 @@ class RigSolver:
 
     def __init__(self) -> None:
         """No job yet."""
-        self._solved: SimpleQueue[Solved] = SimpleQueue()
+        self._solved: SimpleQueue[Solution] = SimpleQueue()
         self._child: Child | None = None
 
     def ask(self, job: Job) -> None:
         """Begin a job, once the one before is answered; every job is, whatever happens."""
         threading.Thread(target=self._do, args=(job,), name="rig", daemon=True).start()
 
-    def answer(self) -> Solved | None:
+    def answer(self) -> Solution | None:
         """The result, if it is there by now."""
         with contextlib.suppress(Empty):
             return self._solved.get_nowait()
@@ -42,27 +42,27 @@ class RigSolver:
             self._child.kill()
 
     def _do(self, job: Job) -> None:
-        answer = Solved(refusal="the search for it ended without an answer")
+        answer: Solution = Unsolved("the search for it ended without an answer")
         try:
             with contextlib.closing(platform().child(MODULE, STALL_S)) as child:
                 self._child = child
                 child.ask(base64.b64encode(msgspec.msgpack.encode(job)))
                 answer = _answer(child)
         except Broken as error:
-            answer = Solved(refusal=f"the process that looks for it is gone: {error}")
+            answer = Unsolved(f"the process that looks for it is gone: {error}")
         except (OSError, msgspec.DecodeError) as error:
-            answer = Solved(refusal=f"the process that looks for it cannot be asked: {error}")
+            answer = Unsolved(f"the process that looks for it cannot be asked: {error}")
         finally:
             self._child = None
             self._solved.put(answer)
 
 
-def _answer(child: Child) -> Solved:
+def _answer(child: Child) -> Solution:
     head = bytearray(LENGTH.size)
     child.read_into(memoryview(head))
     body = bytearray(LENGTH.unpack(head)[0])
     child.read_into(memoryview(body))
-    return msgspec.msgpack.decode(body, type=Solved)
+    return msgspec.msgpack.decode(body, type=Solution)
 
 
 class SolverAtOnce:
@@ -70,17 +70,20 @@ class SolverAtOnce:
 
     def __init__(self) -> None:
         """No job yet."""
-        self._solved: Solved | None = None
+        self._solved: Solution | None = None
 
     def ask(self, job: Job) -> None:
         """Do a job; a delay that it finds is reported, not applied, as frames are paired
         already."""
         found = solved(job)
-        if abs(found.late_s - job.late_s) >= LEAST_LATE * job.period_s:
-            found = Solved(refusal=f"view 2 is {1e3 * found.late_s:+.0f} ms late")
+        if (
+            isinstance(found, Solved)
+            and abs(found.late_s - job.late_s) >= LEAST_LATE * job.period_s
+        ):
+            found = Unsolved(f"view 2 is {1e3 * found.late_s:+.0f} ms late")
         self._solved = found
 
-    def answer(self) -> Solved | None:
+    def answer(self) -> Solution | None:
         """The result."""
         found, self._solved = self._solved, None
         return found

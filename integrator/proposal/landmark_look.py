@@ -92,21 +92,18 @@ def look(
         stature_m: The person's stature.
         since_s: Time since the input before.
     """
-    first, second = shown
-    lone = rig.cameras[0] if second is None else rig.cameras[1]
-    if first is not None and second is not None:
+    told = [(one, camera) for one, camera in zip(shown, rig.cameras, strict=True) if one]
+    (first, one), (second, other) = told[0], told[-1]
+    if len(told) > 1:
         middle_m, firm = _where_both_see(first, second, rig), True
-        turn = axes_of(rig.cameras[0], rig.cameras[1])
     else:
-        middle_m, firm = _where_it_stands(first or second, lone, stature_m)
-        turn = axes_of(lone, lone)
+        middle_m, firm = _where_it_stands(first, one, stature_m)
+    turn = axes_of(one, other)
     if middle_m is None:
         return None
     mirrored = bool(np.linalg.det(turn) < 0.0)
     inputs = np.zeros(INPUTS, np.float32)
-    told = [one for one in zip(shown, rig.cameras, strict=True) if one[0] is not None]
     for n, (seen, camera) in enumerate(told):
-        assert seen is not None
         away_m = centre(camera) - middle_m
         far_m = float(np.linalg.norm(away_m))
         plane = _on_plane(rays(camera, seen.joints_px), -away_m / far_m)
@@ -153,12 +150,9 @@ def _where_both_see(first: Shown, second: Shown, rig: Rig) -> Vector | None:
     return found_m if np.isfinite(depths_m).all() and min(depths_m) >= NEAR_M else None
 
 
-def _where_it_stands(
-    shown: Shown | None, camera: Camera, stature_m: float
-) -> tuple[Vector | None, bool]:
+def _where_it_stands(shown: Shown, camera: Camera, stature_m: float) -> tuple[Vector | None, bool]:
     """The middle of one view's landmarks, and whether its distance comes from an ankle on the
     floor; otherwise it comes from their size."""
-    assert shown is not None
     seen = rays(camera, shown.joints_px)
     forward = seen[MIDDLE].mean(axis=0)
     forward /= np.linalg.norm(forward)

@@ -180,10 +180,8 @@ def _middle_m(masks: tuple[Mask | None, Mask | None], rig: Rig) -> Vector | None
         if not all(_depth_m(camera, found) >= NEAREST_M for camera in rig.cameras):
             return None
     else:
-        n = 0 if first is not None else 1
-        mask = first if first is not None else second
-        assert mask is not None
-        found = standing_m(mask, rig.cameras[n])
+        views = zip(masks, rig.cameras, strict=True)
+        found = next(standing_m(mask, camera) for mask, camera in views if mask is not None)
     return found if np.isfinite(found).all() else None
 
 
