@@ -285,8 +285,8 @@ def _patched(state: State, index: int) -> State:
 
 
 def _near_px(state: State, guide: Guide | None) -> Pixel | None:
-    """Expected place of the body: at the landmarks, by the guide, or in a single view its last
-    place."""
+    """The body's expected place: at its landmarks, by the guide, or in a single view the last
+    one."""
     if state.landmarks is not None and is_trusted(state.landmarks):
         return state.landmarks.joints_px[PELVIS]
     known = expected_body(guide, state.setup.viewer)
