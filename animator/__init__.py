@@ -1,1 +1,1 @@
-"""A body in, a moving picture out."""
+"""Drawings of a body: the live page, overlays and files of motion."""

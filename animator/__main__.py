@@ -1,4 +1,4 @@
-"""The animator process: everything that is said, shown on the live page."""
+"""The animator process: the bus's messages, shown on the live page."""
 
 import logging
 import threading
@@ -25,26 +25,27 @@ from common.rig.camera import paper_rig
 
 HEAR_S: Final = 0.05
 PERIOD_S: Final = 1 / TOPICS[Body].hz
-"""A body that is shown later than this was late."""
+"""Age of a body, seconds, from which on its display counts as late."""
 BEHIND: Final = 10
-"""How far the page stands back when cores are scarce: a pose must never wait for its picture."""
+"""Lowering of the page's priority where cores are scarce: the tracking must not wait for the
+page."""
 MOST_REPORTS: Final = 16
-"""Reports that wait for their body: it comes within a frame or two."""
+"""Number of reports that wait for their body, which comes within a frame or two."""
 START_S: Final = 0.2
-"""Seconds between two announcements that the page is there, until the run begins."""
+"""Seconds between two announcements of an open page, until the run begins."""
 LEFT_S: Final = 3.0
-"""A browser that is gone for so long has left; one that loads the page anew is back sooner."""
+"""Seconds after which a browser has left for good; one that reloads the page is back sooner."""
 MOST_LINGER_S: Final = 3600.0
-"""How long the page of a run that is over stays for who looks at it."""
+"""How long the page of an ended run stays while a browser shows it."""
 
 log = logging.getLogger(__name__)
 
 
 class Subscriber:
-    """All that the page shows, as it comes in."""
+    """All messages that the page shows."""
 
     def __init__(self, bus: Bus) -> None:
-        """Listen from now on."""
+        """Subscribe from now on."""
         self.bodies = bus.subscribe(Body)
         self.answers = bus.subscribe(Answer)
         self.cameras = bus.subscribe(Cameras)
@@ -57,8 +58,8 @@ class Subscriber:
         self._by_process: dict[str, Pulse] = {}
 
     def with_body(self, body: Body) -> tuple[Snapshot, list[Performance]]:
-        """The newest of everything, with the reports that the body was made of, and what is over
-        since."""
+        """The newest of everything, with the reports that the body was made of, and ended
+        performances."""
         self._waiting = [*self._waiting, *self._reports.drain()][-MOST_REPORTS:]
         reports = dict(self._snapshot.reports)
         for report in self._waiting:
@@ -79,17 +80,17 @@ class Subscriber:
         return self._snapshot.body
 
     def pulses(self) -> list[Pulse]:
-        """The newest of each process, if any is new."""
+        """The newest pulse of each process, if any is new."""
         new = self._pulses.drain()
         self._by_process.update((pulse.process, pulse) for pulse in new)
         return list(self._by_process.values()) if new else []
 
 
 def run(page: LivePage, bus: Bus, stop: threading.Event, ending: Connection | None) -> Facts | None:
-    """Show every body that is published, newest only when late; hand on what browsers ask for.
+    """Show every published body, the newest only when late; forward the browsers' commands.
 
     Returns:
-        What came of the run, from its supervisor; None where it was stopped.
+        The outcome of the run, from its supervisor; None where it was stopped.
     """
     subscriber, pace = Subscriber(bus), Pace(PERIOD_S)
     kept = bus.latest(Cameras, HEAR_S)
@@ -120,7 +121,7 @@ def run(page: LivePage, bus: Bus, stop: threading.Event, ending: Connection | No
 
 
 def _show_rest(page: LivePage, subscriber: Subscriber) -> None:
-    """The performance that the end of the run cut off: it is told after the last body."""
+    """The performance that the end of the run cut off: it is reported after the last body."""
     if subscriber.shown is not None:
         snapshot, events = subscriber.with_body(subscriber.shown)
         if events:
@@ -128,7 +129,7 @@ def _show_rest(page: LivePage, subscriber: Subscriber) -> None:
 
 
 def _exchange(page: LivePage, subscriber: Subscriber, bus: Bus) -> None:
-    """Wishes to the bus, answers and pulses to the browsers."""
+    """Commands to the bus, answers and pulses to the browsers."""
     for asked in page.asked():
         bus.publish(Command(what=asked.what))
     for answer in subscriber.answers.drain():
@@ -147,7 +148,7 @@ def _told(ending: Connection) -> Facts:
 
 
 def linger(page: LivePage, stop: threading.Event) -> None:
-    """Stay for whoever looks at a run that is over, until they have left."""
+    """Stay while a browser shows an ended run."""
     until_s = time.monotonic() + MOST_LINGER_S
     left_s = 0.0 if page.was_watched else LEFT_S
     while left_s < LEFT_S and time.monotonic() < until_s and not stop.wait(HEAR_S):
@@ -155,7 +156,7 @@ def linger(page: LivePage, stop: threading.Event) -> None:
 
 
 def warm_up() -> None:
-    """Load or compile all that draws a body: the first one that is heard must not wait for it."""
+    """Load or compile what draws a body, so that the first one need not wait for it."""
     standing = Figure(thesis_bdp(1.75), rest_pose(), ())
     limb_shapes(standing)
     for camera in paper_rig((160, 120), (200.0, 200.0), (4.5, 4.5)).cameras:
@@ -169,15 +170,15 @@ def main(
     ending: Connection | None = None,
     entrance: Entrance | None = None,
 ) -> None:
-    """Open the page at once, show until stopped or until who looks at the end has left, close.
+    """Open the page at once, show the run, stay while a browser shows its end, close.
 
     Args:
-        settings: Of the run.
+        settings: The run's settings.
         context: How this process runs.
-        title: Of the run.
-        ending: On which a supervisor tells what came of the run, when it is over; None: there is
-            none.
-        entrance: Whose token a supervisor told the person; None: we do, by the log.
+        title: The run's title.
+        ending: Connection on which a supervisor sends the outcome when the run is over; None: there
+            is none.
+        entrance: The entrance whose token a supervisor has printed; None: it is logged here.
 
     Raises:
         PageError: When the port is taken.
@@ -203,8 +204,8 @@ def main(
 def _shown(
     page: LivePage, settings: Settings, stop: threading.Event, ending: Connection | None
 ) -> Facts | None:
-    """Show a run, from the moment when its bus is there: as long as that takes where there is a
-    supervisor, who ends this process in time. A first run compiles for minutes before it."""
+    """Show a run once its bus is there. Where there is a supervisor, this waits for any time, as
+    the supervisor ends this process: before a first run all is compiled for minutes."""
     most_s = READY_S if ending is None else HEAR_S
     while True:
         try:

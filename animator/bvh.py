@@ -17,25 +17,25 @@ from common.body.body import Vector
 ROOT_CHANNELS: Final = "CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation"
 CHANNELS: Final = "CHANNELS 3 Zrotation Xrotation Yrotation"
 METRES_IN: Final = {"m": 1.0, "cm": 0.01}
-"""Units that a file may be written in."""
+"""Units of length that a file may use."""
 
 
 def steady(joints_m: Joints, time_s: Vector) -> tuple[Skeleton, Motion, EvenSteps]:
     """A run as a skeleton that moves in even steps, from its first pose to its last.
 
-    Frames that are missing, have no pose or stand between two rows lie between their neighbours.
-    Lengths are fixed (`skeleton_of`); where the joints of a run keep theirs, the skeleton's joints
-    are the run's. A foot that stands does not slide (`planted`).
+    Frames that are missing, have no pose or fall between two rows are interpolated from their
+    neighbours. Lengths are fixed (`skeleton_of`); where the run's joints keep theirs, the skeleton
+    has the same joints. A standing foot does not slide (`planted`).
 
     Args:
         joints_m: (n, 15 or 22, 3), NaN where there is no pose.
-        time_s: (n,) of the rows.
+        time_s: (n,) times of the rows.
 
     Returns:
-        Skeleton, motion, and how the rows lie in the file.
+        The skeleton, its motion, and the rows' places in the file.
 
     Raises:
-        NoMotion: When there are no two poses, or the times make no even steps.
+        NoMotion: When there are fewer than two poses, or the times give no even steps.
     """
     steps = even_steps(joints_m, time_s)
     run = planted(joints_m, time_s)
@@ -50,7 +50,7 @@ def bvh_text(
 ) -> str:
     """A BVH file: metres or centimetres, degrees, +y up, the body faces +z.
 
-    Rotations are applied in the order in which their channels stand, R = R_z R_x R_y.
+    Rotations apply in the order of their channels, R = R_z R_x R_y.
     """
     skeleton = Skeleton(skeleton.tips_m / METRES_IN[scale])
     angles = euler_zxy_deg(motion.turns)
@@ -67,13 +67,13 @@ def bvh_text(
 def euler_zxy_deg(turns: Sequence[Rotation]) -> NDArray[np.float64]:
     """Angles (n, bones, 3) about z, x, y with R = R_z R_x R_y, without jumps along the first axis.
 
-    Of the two triples of a turn, and all that differ by full circles, the one next to the frame
-    before is taken, of the first frame the one next to rest: programs that draw curves between
-    frames would else spin a limb round, and a knee that is bent by 120 degrees would be 60 about x
-    and half turns about the other axes.
+    A turn has two triples, and all that differ by full circles; the one nearest to the frame before
+    is taken, in the first frame the one nearest to rest. Otherwise programs that interpolate
+    between frames would spin a limb round, and a knee that is bent by 120 degrees would be 60 about
+    x and half turns about the other axes.
 
     Args:
-        turns: (n,) of each bone.
+        turns: (n,) turns of each bone.
     """
     angles = np.stack(
         [own.as_euler("ZXY", degrees=True, suppress_warnings=True) for own in turns], axis=1
@@ -88,7 +88,7 @@ def euler_zxy_deg(turns: Sequence[Rotation]) -> NDArray[np.float64]:
 def _nearest(
     angles_deg: NDArray[np.float64], before_deg: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Of the triples (..., 3) that mean one turn, those next to others."""
+    """Of the triples (..., 3) for one turn, those nearest to others."""
     flipped = np.stack(
         [angles_deg[..., 0] + 180.0, 180.0 - angles_deg[..., 1], angles_deg[..., 2] + 180.0], -1
     )

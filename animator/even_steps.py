@@ -1,4 +1,4 @@
-"""Rows of a run on even steps of time, as every file of motion wants them."""
+"""Rows of a run at even time steps, as motion files require."""
 
 from typing import Final, NamedTuple
 
@@ -10,57 +10,57 @@ from animator.skeleton.bones import Joints
 from common.body.body import Vector
 
 MOST_FRAMES: Final = 1_000_000
-"""Longer files are a mistake in the times: a gap that is filled has no end."""
+"""Largest number of frames: a longer file means wrong times, as gaps are filled."""
 WHOLE: Final = 0.4
-"""Steps at most this far from a whole number of frames count for the rate."""
+"""Deviation from a whole number of frames, in frames, up to which a step counts for the rate."""
 TREMBLES: Final = 0.25
-"""Rows at most this far from whole frames, in frames, are taken for them: clocks jitter, and many
-cameras round to milliseconds."""
+"""Deviation from whole frames, in frames, up to which rows are moved to them: clocks jitter, and
+many cameras round to milliseconds."""
 AROUND: Final = 9
-"""Number of steps from whose median the rate of a stretch is taken."""
+"""Number of steps whose median gives the rate of a stretch."""
 FASTEST: Final = 10
-"""Where the rate varies, the file's step is this percentile of those of all stretches: low,
-so that no row of the fastest stretches is skipped."""
+"""Where the rate varies, the file's step is this percentile of all stretches': low, so that no
+row of the fastest stretches is skipped."""
 USUAL: Final = 1.5
-"""Rows that are farther apart, in usual steps, have lost one between them."""
+"""Distance of two rows, in median steps, from which on a row between them was lost."""
 
 
 class NoMotion(ValueError):
-    """There is nothing to animate: the text says why."""
+    """Nothing to animate: the text says why."""
 
 
 class EvenSteps(NamedTuple):
-    """Where the poses of a run stand in a file of even steps that begins with the first of them."""
+    """Places of a run's poses in a file of even steps that begins with the first of them."""
 
     posed: NDArray[np.intp]
     """(k,) rows of the run that have a pose."""
     places: Vector
-    """(k,) where each stands among the file's frames, increasing: a whole number at an even rate,
-    between frames where the rate varies."""
+    """(k,) the place of each among the file's frames, increasing: whole numbers at an even rate,
+    fractions where the rate varies."""
     seen: NDArray[np.bool_]
-    """(frames,) whether a pose stands there, or on both sides without a gap between them."""
+    """(frames,) whether a pose is there, or on both sides without a gap between them."""
     step_s: float
 
     @property
     def frames(self) -> int:
-        """Of the file, from the first pose to the last."""
+        """Time step of the file."""
         return len(self.seen)
 
     def nearest(self) -> NDArray[np.intp]:
-        """(frames,) rows of the run whose pose is the nearest to each frame of the file."""
+        """(frames,) the row whose pose is nearest to each frame of the file."""
         at = np.interp(np.arange(self.frames), self.places, np.arange(len(self.places)))
         return np.asarray(self.posed[np.rint(at).astype(np.intp)])
 
 
 def even_steps(joints_m: Joints, time_s: Vector) -> EvenSteps:
-    """Lay a run out in even steps.
+    """Resample a run to even steps.
 
     Args:
         joints_m: (n, joints, 3), NaN where there is no pose.
-        time_s: (n,) of the rows.
+        time_s: (n,) times of the rows.
 
     Raises:
-        NoMotion: When there are no two poses, or the times do not increase.
+        NoMotion: When there are fewer than two poses, or the times do not increase.
     """
     posed = np.flatnonzero(np.isfinite(joints_m).all(axis=(1, 2)))
     if len(posed) < 2:
@@ -76,7 +76,7 @@ def even_steps(joints_m: Joints, time_s: Vector) -> EvenSteps:
 
 
 def _laid(time_s: Vector, posed: NDArray[np.intp]) -> tuple[float, Vector]:
-    """Seconds a frame, and where the poses stand among the file's frames."""
+    """Seconds per frame, and the poses' places among the file's frames."""
     steps_s = np.diff(time_s)
     apart = np.maximum(1.0, np.rint(steps_s / _usual_step_s(steps_s)))
     frames = np.append(0.0, np.cumsum(apart))
@@ -88,9 +88,9 @@ def _laid(time_s: Vector, posed: NDArray[np.intp]) -> tuple[float, Vector]:
 
 
 def _usual_step_s(steps_s: Vector) -> float:
-    """Of a frame: the mean over all rows that are one or two apart.
+    """Time per frame: the mean over all rows that are one or two apart.
 
-    The median alone would be frames off in the end: of times in whole milliseconds it is a whole
+    The median alone would drift by whole frames: of times in whole milliseconds it is a whole
     millisecond too.
     """
     apart = steps_s / np.percentile(steps_s, 50, method="lower")
@@ -100,7 +100,7 @@ def _usual_step_s(steps_s: Vector) -> float:
 
 
 def _seen(time_s: Vector, posed: NDArray[np.intp], places: Vector) -> NDArray[np.bool_]:
-    """Of each frame of the file whether it lies on a pose, or between two that are neighbours."""
+    """For each frame of the file, whether it lies on a pose, or between two neighbouring ones."""
     steps_s = np.diff(time_s)
     usual_s = median_filter(steps_s, AROUND, mode="nearest")
     together = (steps_s <= USUAL * usual_s)[posed[:-1]] & (np.diff(posed) == 1)
@@ -111,7 +111,7 @@ def _seen(time_s: Vector, posed: NDArray[np.intp], places: Vector) -> NDArray[np
 
 
 def with_gaps(joints_m: Joints, steps: EvenSteps) -> Joints:
-    """The joints as the file's frames have them; NaN where nothing was seen."""
+    """The joints at the file's frames; NaN where no pose is known."""
     rows = np.full((steps.frames, *joints_m.shape[1:]), np.nan)
     keys = np.flatnonzero(steps.seen)
     before = np.clip(np.searchsorted(steps.places, keys, "right") - 1, 0, len(steps.places) - 2)

@@ -1,4 +1,4 @@
-"""A video on disk: pictures written one after the other, whole or not at all."""
+"""A video file: pictures written one after the other, completely or not at all."""
 
 import math
 from collections.abc import Iterable
@@ -17,7 +17,8 @@ Picture = NDArray[np.uint8]
 """(H, W, 3), blue, green, red; H and W are even."""
 
 FINEST_HZ: Final = 65_535
-"""MPEG-4 counts a second in no more ticks; OpenCV takes as many as the rate has digits."""
+"""Largest time scale of MPEG-4, ticks per second; OpenCV derives the scale from the rate's
+digits."""
 
 
 class FilmError(RuntimeError):
@@ -25,23 +26,23 @@ class FilmError(RuntimeError):
 
 
 class Film(NamedTuple):
-    """A video that was written."""
+    """A written video."""
 
     path: Path
     codec: Codec
 
 
 def write_film(path: Path, pictures: Iterable[Picture], fps: float) -> Film:
-    """Write a video as well as this machine can; it takes its place when all of it is there.
+    """Write a video with the best codec of this machine; it replaces the old file once complete.
 
     Args:
-        path: Without a suffix: that is the codec's. A video of that name in another codec is
+        path: Without a suffix, which the codec determines. A video of that name in another codec is
             removed.
         pictures: All of one size.
         fps: Pictures a second.
 
     Raises:
-        FilmError: When it cannot be written; what stood there before is untouched.
+        FilmError: When it cannot be written; the old file is unchanged then.
     """
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -76,14 +77,15 @@ def _write(path: Path, pictures: Iterable[Picture], codec: Codec, fps: float) ->
         due += 1
     if writer is not None:
         writer.release()
-    # OpenCV says nothing of a full disk
+    # OpenCV does not report a full disk
     kept = pictures_in(path, codec)
     if kept != due:
         raise FilmError(f"only {kept} of {due} pictures could be written")
 
 
 def writable_hz(fps: float) -> float:
-    """A rate with as many digits as every codec takes: off by less than a frame in 10,000."""
+    """The rate, rounded to the digits that every codec accepts: off by less than a frame in
+    10,000."""
     return round(fps, max(0, int(math.log10(FINEST_HZ / fps))))
 
 

@@ -1,4 +1,4 @@
-"""How videos can be encoded here: `python -m animator.film_codec W H` tries and reports."""
+"""Available video codecs: `python -m animator.film_codec W H` tries them and prints the best."""
 
 import subprocess
 import sys
@@ -11,12 +11,12 @@ import cv2
 import numpy as np
 
 TRIAL_S: Final = 20.0
-"""A hardware encoder that takes longer for a few pictures is stuck."""
+"""Seconds after which a hardware encoder that was given a few pictures is stuck."""
 TRIAL_PICTURES: Final = 3
 
 
 class Codec(NamedTuple):
-    """A way to encode a video, and the file that it comes in."""
+    """A video codec and its container file."""
 
     name: str
     code: str
@@ -30,16 +30,16 @@ CODECS: Final = (
     Codec("MPEG-4", "mp4v", ".mp4", cv2.CAP_FFMPEG),
     Codec("Motion JPEG", "MJPG", ".avi", cv2.CAP_OPENCV_MJPEG),
 )
-"""The best first: the first plays in browsers, the second is a tenth of the third's size, which
-needs no library that may be missing. OpenCV as PyPI has it lacks the first."""
+"""The codecs, best first: the first plays in browsers; the second's files are a tenth of the
+third's, which needs no optional library. OpenCV from PyPI lacks the first."""
 
 
 @cache
 def best_codec(size: tuple[int, int]) -> Codec:
-    """The best that this machine has for pictures of a size (width, height).
+    """The best codec of this machine for pictures of a size (width, height).
 
-    Whether it works is known by trying, and it is tried in a process of its own: encoders print
-    what they miss, and those of hardware may hang.
+    Each is tried in a process of its own: encoders print what they lack, and hardware encoders may
+    hang.
     """
     asked = [sys.executable, "-P", "-m", __name__, *map(str, size)]
     try:
@@ -52,7 +52,7 @@ def best_codec(size: tuple[int, int]) -> Codec:
 
 
 def pictures_in(path: Path, codec: Codec) -> int:
-    """How many pictures a video says that it has; 0 where it is none."""
+    """Number of pictures that a video claims; 0 where it is no video."""
     written = cv2.VideoCapture(str(path), codec.by)
     kept = int(written.get(cv2.CAP_PROP_FRAME_COUNT)) if written.isOpened() else 0
     written.release()
@@ -60,7 +60,7 @@ def pictures_in(path: Path, codec: Codec) -> int:
 
 
 def works(codec: Codec, size: tuple[int, int]) -> bool:
-    """Whether a video of a few pictures can be written, and is one."""
+    """Whether a video of a few pictures can be written and read back."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"trial{codec.suffix}"
         code = cv2.VideoWriter.fourcc(*codec.code)
@@ -72,7 +72,7 @@ def works(codec: Codec, size: tuple[int, int]) -> bool:
 
 
 def main() -> None:
-    """Print the name of the best codec for pictures of the size that is given."""
+    """Print the name of the best codec for pictures of the given size."""
     size = int(sys.argv[1]), int(sys.argv[2])
     print(next(codec.name for codec in CODECS if works(codec, size)))
 

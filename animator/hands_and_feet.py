@@ -1,4 +1,4 @@
-"""Hands and feet of a body that is drawn: eggs that hang where its arms and legs end."""
+"""Hands and feet of a drawn body: ellipsoids at the ends of its arms and legs."""
 
 from typing import Final
 
@@ -13,7 +13,7 @@ from common.body.extremities import ALL_JOINT_NAMES, EXTREMITY_NAMES
 from common.bus.messages import Body
 
 FINGERS: Final = 1.7
-"""A half open hand reaches so much farther from the wrist than its third knuckle."""
+"""Reach of a half open hand from the wrist, over that of its third knuckle."""
 HAND_THICK, FOOT_THICK = 0.45, 0.3
 """Half width of a hand and of a foot, in half lengths."""
 
@@ -21,7 +21,7 @@ _AT: Final = {name: i for i, name in enumerate(ALL_JOINT_NAMES)}
 _UP: Final = np.array([0.0, 1.0, 0.0])
 _SIDES: Final = ("r", "l")
 _ENDS: Final = {"wrist": "lower_arm", "ankle": "lower_leg"}
-"""The joint that a hand or a foot hangs on, and the limb that ends there."""
+"""The joint of a hand or a foot, and the limb that ends there."""
 
 
 def hands_and_feet(body: Body, limbs: Shapes) -> Shapes:
@@ -29,8 +29,8 @@ def hands_and_feet(body: Body, limbs: Shapes) -> Shapes:
 
     Args:
         body: With a pose and extremities.
-        limbs: The body's, from `limb_shapes`. What is drawn lies a little off the joints, and
-            hands and feet belong where it ends.
+        limbs: The body's, from `limb_shapes`. Drawn limbs deviate a little from the joints, and
+            hands and feet are placed at their ends.
     """
     places = np.array((*body.joints_m, *body.extremities_m))
     starts, ends = _eggs(places)
@@ -47,7 +47,7 @@ def hands_and_feet(body: Body, limbs: Shapes) -> Shapes:
 
 
 def _eggs(places: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Where each begins and ends, (4, 3): a hand at the wrist, a foot above its heel."""
+    """Start and end of each, (4, 3): a hand from the wrist, a foot from above its heel."""
 
     def of(part: str) -> NDArray[np.float64]:
         return places[[_AT[f"{side}_{part}"] for side in _SIDES]]
@@ -67,7 +67,7 @@ def _far_ends(limbs: Shapes) -> NDArray[np.float64]:
 
 
 def _colours(body: Body) -> Colours:
-    """By side, pale where no knuckle or toe was measured."""
+    """Colours by side, pale where no knuckle or toe was measured."""
     sure = dict(zip(EXTREMITY_NAMES, body.extremities_confidence, strict=False))
     strength = [sure.get(f"{s}_{end}", 0.0) for end in ("knuckle", "toe") for s in _SIDES]
     return faded(np.array([RIGHT, LEFT, RIGHT, LEFT], float), np.array(strength))

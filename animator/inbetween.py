@@ -12,19 +12,19 @@ from common.body.body import Vector
 Frames = NDArray[np.int64]
 
 APART: Final = 6
-"""Frames of one key frame: the thesis took 33 of 200 and 17 of 82, one in 5 or 6."""
+"""Frames per key frame: the thesis took 33 of 200 and 17 of 82, one in 5 or 6."""
 
 
 def key_frames(clarity: Vector, apart: int = APART) -> Frames:
-    """The frames to animate from: of every stretch the one that hides least, and both ends.
+    """The key frames: of every stretch the frame that hides least, and both ends.
 
     Args:
-        clarity: (n,) how much of the body is seen in each frame, in [0, 1]; NaN: no pose.
-        apart: Length of a stretch, in frames: so many key frames that a movement which takes
-            two stretches is not passed over.
+        clarity: (n,) visible share of the body in each frame, in [0, 1]; NaN: no pose.
+        apart: Length of a stretch, frames: short enough that a movement of two stretches has a key
+            frame.
 
     Returns:
-        Places in `clarity`, in order; empty where there is no pose at all.
+        Indices into `clarity`, in order; empty where there is no pose at all.
     """
     posed = np.flatnonzero(np.isfinite(clarity))
     if not len(posed):
@@ -38,7 +38,7 @@ def key_frames(clarity: Vector, apart: int = APART) -> Frames:
 
 
 def between(keys: Frames | Vector, motion: Motion, frames: Frames) -> Motion:
-    """The motion at `frames`: that of the key frames, the shorter way round between them.
+    """The motion at `frames`: interpolated between the key frames, the shorter way round.
 
     Args:
         keys: (k,) increasing frames, at least one; a key may lie between two of them.

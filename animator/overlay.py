@@ -1,4 +1,5 @@
-"""The overlay: picture, silhouette and stick, and beside them the lifted body from the side."""
+"""The overlay: picture, silhouette and stick body, and beside them the lifted body from the
+side."""
 
 import math
 from functools import lru_cache
@@ -13,18 +14,19 @@ from common.body.body import JOINT_NAMES, LIMB_ENDS, LIMBS, Vector
 from common.video.pictures import Image
 
 SHOWN: Final = (640, 480)
-"""Larger pictures are not needed to see who is followed and how."""
+"""Largest width of an overlay, pixels: more shows no more."""
 LEAST_HEIGHT_PX: Final = 360
-"""Smaller pictures are enlarged by a whole number: a stick would hide an arm at 160x120."""
+"""Smallest width, pixels: smaller pictures are enlarged by a whole number, as a stick would hide
+an arm at 160x120."""
 SIDE_SHARE: Final = 0.7
 """Width of the view from the side over its height: arms reach 0.8 m to the front and back."""
 TALL_M: Final = 2.3
-"""Height of the room that the view from the side shows: a raised hand fits."""
+"""Height of the space in the view from the side, metres: a raised hand fits."""
 BELOW_M: Final = 0.12
-"""How much of it lies below the floor."""
+"""Part of it below the floor."""
 SEEN: Final = (124, 200, 90)
 TINT: Final = 0.30
-"""Share of SEEN over the silhouette."""
+"""Opacity of SEEN over the silhouette."""
 PAPER: Final = (248, 247, 246)
 INK: Final = (120, 110, 100)
 
@@ -32,7 +34,7 @@ _AT: Final = {name: i for i, name in enumerate(JOINT_NAMES)}
 
 
 class Stroke(NamedTuple):
-    """A line of the stick."""
+    """Width of the stick body's lines."""
 
     near: int
     far: int
@@ -54,7 +56,7 @@ STROKES: Final = (
     Stroke(_AT["l_shoulder"], _AT["r_shoulder"], TRUNK, 0.02),
     Stroke(_AT["l_hip"], _AT["r_hip"], TRUNK, 0.03),
 )
-"""The limbs, in the order of LIMBS, then the lines across shoulders and hips."""
+"""The lines: limbs in the order of LIMBS, then the lines across shoulders and hips."""
 
 
 def overlay(
@@ -65,18 +67,18 @@ def overlay(
     confidence: Vector,
     caption: str = "",
 ) -> Image:
-    """One frame of the overlay video; two of one picture size have one size.
+    """One frame of the overlay video; frames of one picture size have one size.
 
     Args:
         picture: The video's frame.
-        silhouette: Of any size, stretched over the picture; None: not shown.
+        silhouette: Of any size, scaled to the picture; None: not shown.
         joints_px: (15, 2) in the picture's own pixels, NaN where there is no pose.
         joints_m: (15, 3): x to the right of the picture, y up from the floor, z to the camera.
-        confidence: (15,): what is not sure is pale.
-        caption: Beside the picture.
+        confidence: (15,): less sure joints are paler.
+        caption: Text beside the picture.
     """
     times = math.ceil(LEAST_HEIGHT_PX / picture.shape[0])
-    # encoders take whole pairs of rows and columns
+    # encoders require even numbers of rows and columns
     size = (picture.shape[1] * times // 2 * 2, picture.shape[0] * times // 2 * 2)
     left = cv2.resize(picture, None, fx=times, fy=times, interpolation=cv2.INTER_LINEAR)
     left = np.ascontiguousarray(left[: size[1], : size[0]])
@@ -88,7 +90,7 @@ def overlay(
 
 
 def draw_stick(image: Image, joints_px: Vector, confidence: Vector) -> None:
-    """Draw the stick body into an image, (15, 2) in its pixels; nothing where there is no pose."""
+    """Draw the stick body into an image, (15, 2) in its pixels; nothing without a pose."""
     if not np.isfinite(joints_px).all():
         return
     unit = max(1, round(image.shape[0] / 240))
@@ -103,7 +105,7 @@ def draw_stick(image: Image, joints_px: Vector, confidence: Vector) -> None:
 
 
 def side_view(joints_m: Vector, confidence: Vector, height_px: int, caption: str = "") -> Image:
-    """The body seen from the right of the camera, which stands at the left of this view."""
+    """The body seen from the right of the camera, which is at the left of this view."""
     view = _stage(height_px).copy()
     cv2.putText(view, caption, (8, 36), cv2.FONT_HERSHEY_SIMPLEX, 0.45, INK, 1, cv2.LINE_AA)
     height_px, width_px = view.shape[:2]
@@ -142,15 +144,15 @@ def _floor_px(height_px: int) -> int:
 
 
 def _above_floor_m(joints_m: Vector) -> Vector:
-    """Heights (15,); of a body that would leave the view, as before a camera that looks down,
-    those above its lowest joint."""
+    """Heights (15,); of a body that would leave the view, as before a tilted camera, relative to
+    its lowest joint."""
     up_m: Vector = joints_m[:, 1]
     shown = up_m.min() >= -BELOW_M and up_m.max() <= TALL_M - BELOW_M
     return up_m if shown else up_m - up_m.min()
 
 
 def _camera(view: Image, floor_px: int) -> None:
-    """Where the camera stands: at the left, at the height of a chest."""
+    """Draw the camera: at the left, at chest height."""
     at = floor_px - round(1.2 * view.shape[0] / TALL_M)
     cv2.rectangle(view, (4, at - 7), (18, at + 7), INK, -1)
     lens = np.array([[18, at], [27, at - 7], [27, at + 7]], np.int32)
@@ -158,7 +160,7 @@ def _camera(view: Image, floor_px: int) -> None:
 
 
 def _tint(image: Image, silhouette: NDArray[np.bool_]) -> None:
-    """Colour the silhouette and draw its contour, in place."""
+    """Tint the silhouette and draw its contour, in place."""
     size = (image.shape[1], image.shape[0])
     mask = cv2.resize(silhouette.view(np.uint8), size, interpolation=cv2.INTER_NEAREST)
     x, y, width, height = cv2.boundingRect(mask)
@@ -171,7 +173,7 @@ def _tint(image: Image, silhouette: NDArray[np.bool_]) -> None:
 
 
 def _paint(stroke: Stroke, confidence: Vector) -> tuple[int, ...]:
-    """A stroke's colour in OpenCV's order, paler the less sure its far end is."""
+    """A line's colour in OpenCV's order, paler the less sure its far end is."""
     strength = float(np.clip(np.nan_to_num(confidence[stroke.far]), 0.0, 1.0))
     return tuple(
         round(pale + strength * (full - pale))
@@ -180,6 +182,7 @@ def _paint(stroke: Stroke, confidence: Vector) -> tuple[int, ...]:
 
 
 def _corner(place: Vector) -> tuple[int, int]:
-    """A place whose pixels' centres are at halves, as OpenCV draws; far outside stays outside."""
+    """A place for OpenCV, whose pixel centres are whole numbers; places far outside stay
+    outside."""
     x, y = np.clip(np.rint(place - 0.5), -10_000, 10_000)
     return int(x), int(y)

@@ -1,4 +1,4 @@
-"""What is to be shown: the newest messages as shapes in the room, before anything draws them."""
+"""The newest messages as shapes in the room, ready to be drawn."""
 
 import math
 from collections.abc import Mapping
@@ -19,14 +19,14 @@ Colour = tuple[int, int, int]
 Colours = NDArray[np.uint8]
 
 LEFT: Final[Colour] = (224, 146, 68)
-"""The body's left side: amber. It and RIGHT stay apart for colour-blind eyes."""
+"""Colour of the body's left side: amber. It and RIGHT are distinct for colour-blind people."""
 RIGHT: Final[Colour] = (66, 122, 184)
 TRUNK: Final[Colour] = (140, 152, 166)
 UNSURE: Final[Colour] = (222, 225, 229)
-"""What a limb fades to as its confidence falls to 0."""
+"""Colour of a limb with confidence 0."""
 
 BEHIND, ABOVE = 1.3, 0.45
-"""How far behind and above the cameras the spectator stands, in distances of the farthest one."""
+"""The spectator's distance behind and above the cameras, in distances of the farthest one."""
 
 NEAR_ENDS: Final = [i for i in range(len(LIMBS)) if i not in (TORSO, HEAD)]
 HANDS: Final = [LIMBS.index("r_lower_arm"), LIMBS.index("l_lower_arm")]
@@ -43,11 +43,11 @@ _JOINT_OF_LIMB: Final = tuple(
     )
     for limb in LIMBS
 )
-"""The landmark whose confidence is a limb's: the one at its far end."""
+"""Index of the landmark whose confidence a limb has: the one at its far end."""
 
 
 class Snapshot(msgspec.Struct, frozen=True):
-    """The newest of everything that is shown; what was not heard yet is missing."""
+    """The newest message of everything that is shown; None for one that has not come yet."""
 
     body: Body | None = None
     reports: Mapping[int, View] = {}
@@ -56,7 +56,7 @@ class Snapshot(msgspec.Struct, frozen=True):
     """By viewer."""
     posture: Posture | None = None
     performed: str = ""
-    """Posture of the last performance that was told."""
+    """Posture of the last reported performance."""
 
 
 class Figure(NamedTuple):
@@ -66,7 +66,7 @@ class Figure(NamedTuple):
     pose: Vector
     """(25,), POSE_NAMES order."""
     confidence: tuple[float, ...] = ()
-    """JOINT_NAMES order, in [0, 1]; empty: sure of all."""
+    """JOINT_NAMES order, in [0, 1]; empty: all are sure."""
 
 
 class Shapes(NamedTuple):
@@ -83,7 +83,7 @@ class Shapes(NamedTuple):
 
 
 class Frustum(NamedTuple):
-    """A camera in the room: looks along its +z, its picture's rows run along +y."""
+    """A camera in the room: it looks along its +z, its picture's rows run along +y."""
 
     position: Vector
     wxyz: Vector
@@ -94,14 +94,14 @@ class Frustum(NamedTuple):
 
 
 class Viewpoint(NamedTuple):
-    """Where the spectator stands, and what they look at."""
+    """The spectator's place, and the point looked at."""
 
     position: Vector
     look_at: Vector
 
 
 def figure(body: Body | None) -> Figure | None:
-    """What can be drawn of a body; None where it has no pose or no measures."""
+    """The drawable part of a body; None where it has no pose or no measures."""
     if body is None or not body.pose or body.bdp is None:
         return None
     return Figure(body.bdp, np.array(body.pose), body.confidence)
@@ -116,10 +116,10 @@ def limb_shapes(figure: Figure) -> Shapes:
 
 
 def round_shapes(limbs: Shapes) -> Shapes:
-    """What is round, as copies of the unit ball: the head, every near end of an arm's or a leg's
+    """Round parts, as copies of the unit ball: the head, every near end of an arm's or a leg's
     cylinder, the two hands.
 
-    The balls close the gap that two cylinders leave at a bent joint; a model's arms end round.
+    The balls close the gap between two cylinders at a bent joint; a model's arms have round ends.
     """
     turns = Rotation.from_quat(limbs.wxyzs, scalar_first=True)
     far = limbs.positions + turns.apply(limbs.scales * (0.0, 1.0, 0.0))
@@ -132,14 +132,14 @@ def round_shapes(limbs: Shapes) -> Shapes:
 
 
 def rows_of(shapes: Shapes, rows: list[int]) -> Shapes:
-    """Some of the copies, in the order that is asked for."""
+    """Some of the copies, in the given order."""
     return Shapes(
         shapes.positions[rows], shapes.wxyzs[rows], shapes.scales[rows], shapes.colours[rows]
     )
 
 
 def limb_colours(confidence: tuple[float, ...] = ()) -> Colours:
-    """The colour of each limb, (10, 3): by side, faded where its far joint is not sure."""
+    """The colour of each limb, (10, 3): by side, faded where its far joint is unsure."""
     sides = {"l": LEFT, "r": RIGHT}
     full = np.array([sides[limb[0]] if limb[1] == "_" else TRUNK for limb in LIMBS], float)
     if not confidence:
@@ -148,13 +148,13 @@ def limb_colours(confidence: tuple[float, ...] = ()) -> Colours:
 
 
 def faded(full: Vector, strength: Vector) -> Colours:
-    """Colours (n, 3) that go towards UNSURE as their strength (n,) falls from 1 to 0."""
+    """Colours (n, 3) that fade to UNSURE as their strength (n,) falls from 1 to 0."""
     colours: Colours = np.rint(UNSURE + strength[:, None] * (full - UNSURE)).astype(np.uint8)
     return colours
 
 
 def frustum(camera: Camera, size: tuple[int, int]) -> Frustum:
-    """Where a camera stands and what it sees; a principal point off the centre is not shown."""
+    """A camera's place and field of view; a principal point off the centre is not shown."""
     (width, height), K = size, np.array(camera.K)
     return Frustum(
         position=centre(camera),
@@ -165,10 +165,10 @@ def frustum(camera: Camera, size: tuple[int, int]) -> Frustum:
 
 
 def viewpoint(rig: Rig) -> Viewpoint:
-    """A place behind and above the cameras, from which both of their pictures can be read.
+    """A viewpoint behind and above the cameras from which both of their pictures are readable.
 
-    It looks at the middle of the room: the place that is nearest to the axes of all cameras. One
-    camera alone, or two that face each other, are looked at from the side.
+    It looks at the middle of the room: the point nearest to the axes of all cameras. A single
+    camera, or two that face each other, are looked at from the side.
     """
     places = np.array([centre(camera) for camera in rig.cameras])
     axes = np.array([camera.R[2] for camera in rig.cameras])

@@ -1,4 +1,4 @@
-"""Unit solids that a body is drawn with: a cylinder with soft rims, and a ball."""
+"""Unit solids for drawing a body: a cylinder with soft rims, and a ball."""
 
 import math
 from typing import Final, NamedTuple
@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from common.body.body import Vector
 
 SECTORS: Final = 24
-"""Sides of a shape that stands for a round one: no corner is seen at the page's size."""
+"""Number of sides of a round shape: no corner is visible at the page's size."""
 RIM: Final = 0.12
 """Share of a cylinder's radius and height that rounds each of its rims."""
 
@@ -43,7 +43,8 @@ def unit_ball() -> Mesh:
 
 
 def _turned_on_a_lathe(radii: Vector, heights: Vector) -> Mesh:
-    """The surface that a profile sweeps round the y axis; it begins and ends on that axis."""
+    """The surface of revolution of a profile about the y axis; the profile begins and ends on
+    that axis."""
     turn = np.linspace(0.0, 2.0 * math.pi, SECTORS, endpoint=False)
     rings = [
         np.stack([r * np.cos(turn), np.full(SECTORS, y), r * np.sin(turn)], axis=1)

@@ -1,4 +1,4 @@
-"""What a run of one camera decided by itself, how sure it was, and what notes make of it."""
+"""The decisions of a run with one camera, their confidence, and the notes' effect on them."""
 
 from collections.abc import Mapping
 from typing import Final, NamedTuple
@@ -13,13 +13,12 @@ from common.npz_file import Arrays
 from common.rig.camera import PAPER_ROTATIONS, TOWARDS
 
 CONFIDENT: Final = 0.7
-"""A decision with less confidence than this is worth a look."""
+"""Confidence below which a decision is worth checking."""
 SEEN: Final = 0.3
-"""A joint that keeps less than this of the confidence of the joint before it is hidden, the
-thesis's "highly occluded"; a direction that is not sure costs it a half at most."""
+"""Ratio of a joint's confidence to that of the joint before it, below which it is hidden, the
+thesis's "highly occluded"; an unsure direction costs at most a half."""
 FLAT_DEG: Final = 15.0
-"""A segment that leans less out of the picture's plane has no direction that anyone would
-see."""
+"""Lean out of the picture's plane, degrees, below which a segment has no visible direction."""
 
 _AT: Final = {name: i for i, name in enumerate(JOINT_NAMES)}
 _FAR: Final = {int(far): int(near) for near, far in LIMB_ENDS}
@@ -28,26 +27,26 @@ _HANGS_ON: Final = [
     for i, name in enumerate(JOINT_NAMES)
     if name != "pelvis"
 ]
-"""Each landmark with the one that carries it, carriers first."""
+"""Each landmark with its parent, parents first."""
 
 
 class Take(NamedTuple):
     """A run: n frames."""
 
     frame: NDArray[np.int64]
-    """(n,) index into the video."""
+    """(n,) index of the frame in the video."""
     joints_px: NDArray[np.float64]
     """(n, 15, 2) in the video's own pixels; NaN where there is no pose."""
     joints_m: NDArray[np.float64]
     """(n, 15, 3): x to the right of the picture, y up, z to the camera."""
     confidence: NDArray[np.float64]
-    """(n, 15)"""
+    """(n, 15) confidence."""
     orientation: NDArray[np.str_]
     """(n,) names of ORIENTATIONS; "" where the run did not need one."""
     orientation_confidence: NDArray[np.float64]
-    """(n,)"""
+    """(n,) confidence of the orientation."""
     depth_confidence: NDArray[np.float64]
-    """(n, 10), LIMBS order."""
+    """(n, 10), LIMBS order: confidence of each depth's sign."""
 
     @property
     def posed(self) -> NDArray[np.bool_]:
@@ -57,24 +56,24 @@ class Take(NamedTuple):
 
 
 class Doubt(NamedTuple):
-    """One thing that the program was not sure of."""
+    """A decision of the program with low confidence."""
 
     kind: str
-    """orientation, depth or joint."""
+    """Kind: orientation, depth or joint."""
     name: str
-    """Of the segment or joint; what was chosen, of an orientation."""
+    """Name of the segment or joint; for an orientation, the choice."""
     confidence: float
 
 
 def take_of(poses: Arrays, px_scale: float = 1.0, turn: ArrayLike = PAPER_ROTATIONS[0]) -> Take:
-    """A run as its `poses.npz` has it.
+    """A run from its `poses.npz`.
 
     Args:
-        poses: Beside the arrays of every run, one of a single view has `orientation` (n,),
+        poses: A run of a single view has, beside the common arrays, `orientation` (n,),
             `orientation_confidence` (n,) and `depth_confidence` (n, 10) in the order of LIMBS; a
-            run without them was sure. A frame in which the body was lost has that of the nearest
-            frame with one, without confidence: something to put right.
-        px_scale: Pixels of the video in one of the working picture.
+            run without them was sure. A frame in which the body was lost gets the pose of the
+            nearest frame with one, without confidence, for the user to correct.
+        px_scale: Pixels of the video per pixel of the working picture.
         turn: World to camera, (3, 3).
     """
     n = len(poses["frame"])
@@ -91,7 +90,7 @@ def take_of(poses: Arrays, px_scale: float = 1.0, turn: ArrayLike = PAPER_ROTATI
 
 
 def _nearest_posed(poses: Arrays) -> NDArray[np.int64]:
-    """(n,) the row whose pose a frame opens with: its own, but where the body was lost."""
+    """(n,) the row whose pose a frame shows: its own, unless the body was lost."""
     rows = np.arange(len(poses["frame"]))
     posed = np.flatnonzero(np.isfinite(poses["joints_m"]).all(axis=(1, 2)))
     lost = rows[np.array(poses.get("status", [""] * len(rows))) == "lost"]
@@ -101,7 +100,7 @@ def _nearest_posed(poses: Arrays) -> NDArray[np.int64]:
 
 
 def depth_of(joints_m: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Which way segments lean, (n, 10), LIMBS order.
+    """Lean of segments, (n, 10), LIMBS order.
 
     1: toward the camera, -1: away, 0: less than FLAT_DEG out of the picture's plane, or no pose.
     """
@@ -120,7 +119,7 @@ def hidden_of(confidence: NDArray[np.float64]) -> NDArray[np.bool_]:
 
 
 def doubts_at(take: Take, row: int, notes: Notes) -> list[Doubt]:
-    """What a frame leaves open, the least sure first; what the user settled is not."""
+    """A frame's open questions, the least sure first; those that the user settled are left out."""
     if not take.posed[row]:
         return []
     annotations = held(notes, int(take.frame[row]))
@@ -140,9 +139,9 @@ def doubts_at(take: Take, row: int, notes: Notes) -> list[Doubt]:
 
 
 def next_doubtful(take: Take, row: int, notes: Notes, step: int = 1) -> int | None:
-    """The next row after this one, or before it, that leaves something open; None: there is none.
+    """The next or previous row with an open question; None: there is none.
 
-    A stretch of frames with the same open questions is one place to look at: its first frame.
+    A stretch of frames with the same open questions counts once: its first frame.
     """
     here = _questions(take, row, notes)
     while 0 <= (row := row + step) < len(take.frame):
@@ -154,9 +153,9 @@ def next_doubtful(take: Take, row: int, notes: Notes, step: int = 1) -> int | No
 
 
 def with_notes(take: Take, row: int, annotations: Held) -> tuple[Vector, Vector]:
-    """A frame's stick (15, 2) and body (15, 3) with the user's joints and depths laid over them.
+    """A frame's stick body (15, 2) and body (15, 3) with the user's joints and depths applied.
 
-    Shows at once what was said; the fit itself follows when the video is tracked again.
+    It shows an input at once; the fit itself follows when the video is tracked again.
     """
     joints_px, joints_m = take.joints_px[row].copy(), take.joints_m[row].copy()
     for name, place in annotations.joints_px.items():
@@ -165,7 +164,7 @@ def with_notes(take: Take, row: int, annotations: Held) -> tuple[Vector, Vector]
 
 
 def leaned(joints_m: Vector, depth: Mapping[str, Depth]) -> Vector:
-    """A body (15, 3) whose named segments lean as said, and what hangs on them with them."""
+    """A body (15, 3) whose named segments lean as given, with their children."""
     given = {
         int(LIMB_ENDS[LIMBS.index(limb), 1]): 1.0 if way == "toward" else -1.0
         for limb, way in depth.items()

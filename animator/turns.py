@@ -1,4 +1,4 @@
-"""Turns that lead directions to directions, many at a time: what scipy's Rotation leaves out."""
+"""Rotations between directions, many at a time: functions that scipy's Rotation lacks."""
 
 from typing import Final, Literal
 
@@ -9,18 +9,17 @@ from scipy.spatial.transform import Rotation
 from common.body.body import Vector
 
 OPPOSITE: Final = 1e-12
-"""Two directions that are opposite but for rounding: any turn of 180 degrees leads one to the
+"""Cosine below which two directions count as opposite: any turn of 180 degrees maps one to the
 other."""
 
 
 def arc(start: Vector, ends: NDArray[np.float64]) -> Rotation:
-    """The shortest turns that lead a direction (3,) to directions (n, 3): they twist nothing."""
+    """The shortest turns from a direction (3,) to directions (n, 3): they have no twist."""
     return Rotation.from_quat(_half(start, ends), scalar_first=True)
 
 
 def arc_axes(starts: NDArray[np.float64], ends: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Likewise as matrices (..., 3, 3), of directions (..., 3): one pose has many turns, and a few
-    take less time so."""
+    """The same as matrices (..., 3, 3), for directions (..., 3): faster where there are few."""
     quaternions = _half(starts, ends)
     quaternions /= np.sqrt((quaternions**2).sum(axis=-1, keepdims=True))
     w, x, y, z = np.moveaxis(quaternions, -1, 0)
@@ -52,12 +51,12 @@ def _half(starts: NDArray[np.float64], ends: NDArray[np.float64]) -> NDArray[np.
 def axes_of(
     up: NDArray[np.float64], across: NDArray[np.float64], keep: Literal["up", "across"] = "up"
 ) -> NDArray[np.float64]:
-    """The turns that lead +y to `up` and +x to `across`, (n, 3) each, as matrices (n, 3, 3).
+    """The turns that map +y to `up` and +x to `across`, (n, 3) each, as matrices (n, 3, 3).
 
     Args:
         up: (n, 3).
         across: (n, 3), not parallel to it.
-        keep: Which of the two is met exactly; the other is made square to it.
+        keep: Which of the two is met exactly; the other is made perpendicular to it.
     """
     out = _cross(across, up)
     x, y = (_cross(up, out), up) if keep == "up" else (across, _cross(out, across))
@@ -67,7 +66,7 @@ def axes_of(
 
 
 def unbroken(xyzw: Vector) -> Vector:
-    """Of q and -q, which are one turn, the one next to the frame before: players interpolate."""
+    """Of q and -q, which are one turn, the one nearer to the frame before: players interpolate."""
     turned = (xyzw[1:] * xyzw[:-1]).sum(axis=1) < 0
     signs = np.where(np.logical_xor.accumulate(np.concatenate([[False], turned])), -1.0, 1.0)
     followed: Vector = xyzw * signs[:, None]
@@ -75,6 +74,6 @@ def unbroken(xyzw: Vector) -> Vector:
 
 
 def _cross(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
-    """What np.cross gives of (..., 3), in a fifth of its time where there are few."""
+    """Cross product of (..., 3), in a fifth of np.cross's time for few vectors."""
     (ax, ay, az), (bx, by, bz) = np.moveaxis(a, -1, 0), np.moveaxis(b, -1, 0)
     return np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=-1)

@@ -25,45 +25,46 @@ from recognizer.performance_judge import Event
 from recognizer.postures import DensityModel, PostureModel
 
 SHIPPED = Path(__file__).parent / "postures.npz"
-"""The model that is used when the settings name none."""
+"""Path of the default model."""
 SHIPPED_PAPER = SHIPPED.with_name("postures_paper.npz")
-"""Model file of `paper` mode: the paper's recogniser, learnt from what that mode tracks."""
+"""Model file of `paper` mode: the paper's recogniser, trained on runs in that mode."""
 REACH_FRAMES: Final = 900
-"""A performance that is longer is reported from there on: a minute at the paper's rate."""
+"""Longest performance, frames: a longer one is reported from there on; a minute at the paper's
+rate."""
 GAP_S: Final = 1.0
-"""No body for longer ends what was going on, as so many frames without a pose do: what came before
-a cut and what comes after it are not one motion."""
+"""Gap between bodies, seconds, that ends a motion, as that many frames without a pose do: what
+comes before and after a cut is not one motion."""
 UNNUMBERED: Final = -1
-"""Frame of a message that belongs to no frame of its own, as at the end of a run."""
+"""Frame number of a message that belongs to no frame, as at the end of a run."""
 HEAR_S = 0.05
 MOVING = ("tracking", "predicted")
-"""States in which a body's angles say what it does; the opening posture is no motion. Smooth angles
-of a predicted body go on as they went: they bridge a gap of a few frames."""
+"""States in which a body's angles are used; the opening posture is no motion. A predicted body's
+smoothed angles continue their motion and bridge a gap of a few frames."""
 
 
 class State(NamedTuple):
-    """What is remembered of a stream."""
+    """State of a stream."""
 
     window: spotting.State
     events: events.State | None
-    """None where the model is the paper's: it knows nothing but postures."""
+    """None for the paper's model: it has postures alone."""
     judged: spotting.Judgement = spotting.NOTHING
     doing: events.Doing = events.NOTHING
     frames: tuple[tuple[int, float], ...] = ()
-    """Number and time of each of the models' frames so far that a performance can reach."""
+    """Number and time of each of the models' frames that a performance can still include."""
     rate: model_rate.State = model_rate.State()
 
 
 def init(model: PostureModel, window_frames: int) -> State:
-    """Nothing seen yet."""
+    """The initial state."""
     network = events.init(model) if isinstance(model, DensityModel) else None
     return State(spotting.init(model, window_frames), network)
 
 
 def step(state: State, body: Body) -> tuple[State, Posture]:
-    """One body more: the judgement of the window that ends with it, and what is under way.
+    """Process one body: the judgement of the window that ends with it, and the posture in progress.
 
-    Models count their own frames, 15 a second: a body of a faster camera may say nothing new.
+    Models count their own frames, 15 a second: a faster camera's body may add no frame.
     """
     if state.frames and body.captured_s - state.frames[-1][1] > GAP_S:
         state = _after_a_gap(state)
@@ -87,11 +88,11 @@ def step(state: State, body: Body) -> tuple[State, Posture]:
 
 
 def finish(state: State, last: Posture) -> Posture | None:
-    """What is reported at the end of a run: the performance that it cuts off, if any.
+    """The messages at the end of a run: the performance that it cuts off, if any.
 
     Args:
         state: After the last body.
-        last: What was reported of that.
+        last: The last reported posture.
     """
     event = None if state.events is None else events.finish(state.events)
     if event is None:
@@ -101,13 +102,14 @@ def finish(state: State, last: Posture) -> Posture | None:
 
 
 def _at(state: State, step_number: int) -> tuple[int, float]:
-    """Number and time of one of the models' frames; of the oldest kept, where that one is not."""
+    """Number and time of one of the models' frames; of the oldest kept, where that one is not
+    kept."""
     oldest = state.window.next_frame - len(state.frames)
     return state.frames[max(step_number - oldest, 0)]
 
 
 def _with_row(state: State, body: Body, row: NDArray[np.float64] | None) -> State:
-    """What a body shows, as one of the models' frames."""
+    """A body as one of the models' frames."""
     window, judged = spotting.step(state.window, row)
     network, doing = state.events, events.NOTHING
     if network is not None:
@@ -117,7 +119,7 @@ def _with_row(state: State, body: Body, row: NDArray[np.float64] | None) -> Stat
 
 
 def _after_a_gap(state: State) -> State:
-    """What remains when a while was not seen at all."""
+    """The state after a gap."""
     window, network = state.window, state.events
     for _ in range(spotting.MISSED_FRAMES):
         window, _judged = spotting.step(window, None)
@@ -140,13 +142,13 @@ def performance(event: Event, onset: tuple[int, float], end: tuple[int, float]) 
 
 
 def words(one: Performance) -> str:
-    """A performance in a line."""
+    """One line about a performance."""
     times = f", {one.times} times" if one.times > 1 else ""
     return f"{one.onset_s:.1f} to {one.end_s:.1f} s: {one.name}{times} ({one.posterior:.0%} sure)"
 
 
 def row_of(body: Body) -> NDArray[np.float64] | None:
-    """What a body shows to the recogniser, (20,); None where it is not followed in a motion."""
+    """A body as the recogniser's input, (20,); None where it is not tracked in a motion."""
     if body.status not in MOVING or not body.pose:
         return None
     angles_deg = np.array([[body.pose[i] for i in ANGLES_IN_POSE]])
@@ -156,7 +158,7 @@ def row_of(body: Body) -> NDArray[np.float64] | None:
 def run(
     model: PostureModel, settings: Settings, bus: Bus, period_s: float, stop: threading.Event
 ) -> None:
-    """Judge every body that is published until stopped."""
+    """Judge every published body until stopped."""
     state, told = init(model, settings.recognizer.window_frames), ""
     posture: Posture | None = None
     pace = Pace(period_s)
@@ -182,7 +184,7 @@ def run(
 
 
 def _lost(bodies: Inbox[Body]) -> dict[str, int]:
-    """What was lost so far, as a Pulse reports it."""
+    """Losses so far, for a Pulse."""
     return {
         "dropped": bodies.dropped,
         "malformed": bodies.malformed,
@@ -191,14 +193,14 @@ def _lost(bodies: Inbox[Body]) -> dict[str, int]:
 
 
 def model_of(settings: Settings, meant: str = "") -> PostureModel:
-    """The model that the settings name, or the one in the package.
+    """The model named in the settings, or the default one.
 
     Args:
-        settings: Of the run.
-        meant: The posture that the run's clip says it shows; "" where it says none.
+        settings: The run's settings.
+        meant: The posture that the clip is labelled with; "" without a label.
 
     Raises:
-        ModelError: When the model cannot be used, or does not know that posture.
+        ModelError: When the model cannot be used, or does not contain that posture.
     """
     shipped = SHIPPED if METHODS[settings.mode].density_recognizer else SHIPPED_PAPER
     path = Path(settings.recognizer.model) if settings.recognizer.model else shipped
@@ -213,7 +215,7 @@ def model_of(settings: Settings, meant: str = "") -> PostureModel:
 
 
 def warm_up(model: PostureModel, window_frames: int) -> None:
-    """Compile or load what a step runs."""
+    """Compile or load all code of a step."""
     window = spotting.init(model, window_frames)
     network = events.init(model) if isinstance(model, DensityModel) else None
     for turn_deg in range(spotting.NAMED_FROM_FRAMES + 2):
@@ -224,7 +226,7 @@ def warm_up(model: PostureModel, window_frames: int) -> None:
 
 
 def main(settings: Settings, period_s: float, context: ProcessContext = ProcessContext()) -> None:
-    """Load the model, name postures until stopped, close.
+    """Load the model, recognise postures until stopped, close.
 
     Raises:
         ModelError: When the model cannot be used.

@@ -1,4 +1,4 @@
-"""Performances found in an uncut stream: one event each, as soon as it is over."""
+"""Performances found in a continuous stream: one event each, as soon as it is over."""
 
 import math
 from dataclasses import dataclass, replace
@@ -14,26 +14,26 @@ from recognizer.postures import STATES, Array, DensityModel
 from recognizer.spotting import MISSED_FRAMES
 
 OVER_FRAMES: Final = 2
-"""Frames for which a performance must be over on the best path before it becomes an event."""
+"""Frames for which a performance must have ended on the best path before it becomes an event."""
 AGAIN_FRAMES: Final = 9
 """Frames after the end of a performance within which the same posture continues it, 0.6 s: some
 people pause between two kicks. After a longer rest a new performance begins."""
 SPEED_FRAMES: Final = 3
-"""Limbs' speed is the change of their directions within so many frames."""
+"""Frames over which the change of limbs' directions gives their speed."""
 KEPT_FRAMES: Final = 150
-"""Poses that a performance is judged by: its last ten seconds."""
+"""Number of frames by which a performance is judged: its last ten seconds."""
 
 
 class Doing(NamedTuple):
-    """What the body is doing now."""
+    """The posture in progress."""
 
     name: str
-    """"" while standing or doing something unknown."""
+    """"" while the person stands or does something unknown."""
     times: int
-    """How often its course was gone through so far."""
+    """Number of repetitions so far."""
     event: Event | None
-    """A performance that is over. One that begins where the event before it does is that one gone
-    on, and takes its place."""
+    """A performance that has ended. One with the same start as the event before continues and
+    replaces it."""
 
 
 NOTHING: Final = Doing("", 0, None)
@@ -58,25 +58,25 @@ class State:
     judged: int = -1
     """Last frame of the last performance that was judged."""
     told: tuple[Event, ...] = ()
-    """The parts of the last event, between which it paused; () where what was judged last was
+    """The parts of the last event, between which it paused; () where the last judged motion was
     none."""
     missed: int = 0
-    """How many frames without a pose came last."""
+    """Number of frames without a pose since the last pose."""
 
 
 def init(model: DensityModel) -> State:
-    """Nothing seen yet."""
+    """The initial state."""
     return _begun(PathNetwork(model))
 
 
 def step(state: State, row: NDArray[np.float64] | None) -> tuple[State, Doing]:
-    """Take one frame; a frame without a pose adds nothing, MISSED_FRAMES of them in a row end what
-    was going on: who comes after them must be seen standing first.
+    """Process one frame. A frame without a pose adds nothing; MISSED_FRAMES of them in a row end
+    the motion in progress, and the next person must be seen standing first.
 
     Args:
         row: (20,) ROW_NAMES order; None or NaN where there is no pose.
 
-    Source: Lee & Kim 1999 for a network of gestures and one model of all else; Rabiner 1989,
+    Source: Lee & Kim 1999 for a network of gestures with one model for all else; Rabiner 1989,
     section III B, for its best path.
     """
     now = state.next_frame
@@ -100,7 +100,7 @@ def step(state: State, row: NDArray[np.float64] | None) -> tuple[State, Doing]:
 
 
 def finish(state: State) -> Event | None:
-    """The performance that the end of a stream cuts off, or follows too soon for it to be
+    """The performance that the end of a stream cuts off, or that ended too shortly before to be
     reported."""
     best = int(state.score.argmax())
     under_way = best < len(state.score) - 2
@@ -111,8 +111,8 @@ def finish(state: State) -> Event | None:
 def _judged(state: State, over: NDArray[np.int64]) -> tuple[tuple[Event, ...], Event | None]:
     """The parts of the last event now, and what is reported of it.
 
-    The best path may be one that stayed in its posture through a pause after which another one was
-    judged: what was reported then is a part of it.
+    The best path may have stayed in its posture through a pause after which another performance was
+    judged: the earlier report is then a part of it.
     """
     told = state.told
     seen = [over[ONSET] <= frame <= over[LAST] for frame in state.frames]
@@ -128,12 +128,12 @@ def _judged(state: State, over: NDArray[np.int64]) -> tuple[tuple[Event, ...], E
 
 
 def _parts_before(told: tuple[Event, ...], name: str, first: int) -> tuple[Event, ...]:
-    """The parts of the last event that came before what begins then, if that goes on with it."""
+    """The earlier parts of the last event, if the one that begins now continues it."""
     return tuple(part for part in told if part.first < first and _goes_on(told, name, first))
 
 
 def _goes_on(told: tuple[Event, ...], name: str, first: int) -> bool:
-    """Whether what begins then is the last performance, after a pause at most."""
+    """Whether the performance that begins now continues the last one, after a pause at most."""
     return bool(told) and told[-1].name == name and first - told[-1].last <= AGAIN_FRAMES
 
 
@@ -142,7 +142,7 @@ def _times(parts: tuple[Event, ...]) -> int:
 
 
 def _begun(network: PathNetwork) -> State:
-    """Nothing was seen by that network yet."""
+    """The network's state before any frame."""
     states = len(network.model.names) * STATES + 2
     score = np.full(states, -np.inf)
     score[-1] = 0.0

@@ -10,10 +10,10 @@ from common.body.body import ANGLE_INDEX, ANGLE_NAMES, JOINT_NAMES
 from common.compiled import compiled
 
 Rows = NDArray[np.float64]
-"""What was tracked in a stretch of frames: (n, 20), ROW_NAMES order, NaN where there is no pose."""
+"""A tracked stretch of frames: (n, 20), ROW_NAMES order, NaN where there is no pose."""
 
 ROW_NAMES: Final = (*ANGLE_NAMES, "root_x", "root_y", "root_z")
-"""The 17 angles (degrees) and where the pelvis is in the world (leg lengths of that body)."""
+"""The 17 angles (degrees) and the pelvis's place in the world (leg lengths of that body)."""
 
 LEG: Final = tuple(JOINT_NAMES.index(f"r_{joint}") for joint in ("hip", "knee", "ankle"))
 PELVIS: Final = JOINT_NAMES.index("pelvis")
@@ -42,14 +42,14 @@ FEATURE_NAMES: Final = tuple(
     [f"{limb}_{axis}" for limb in LIMBS for axis in ("right", "up", "forward")]
     + [f"{elbow}_{part}" for elbow in ELBOWS for part in ("cos", "sin")]
 )
-"""The order of a feature vector; a model says for which order it was trained."""
+"""The order of a feature vector; a model records the order that it was trained with."""
 
 
 def rows(angles_deg: NDArray[np.float64], joints_m: NDArray[np.float64]) -> Rows:
-    """What a recogniser is given of a stretch of frames, (n, 20).
+    """The recogniser's input for a stretch of frames, (n, 20).
 
-    Places count in leg lengths: a tall and a small person who squat alike shall look alike, and a
-    world of assumed scale like a measured one.
+    Places are in leg lengths, so that a tall and a small person who squat alike look alike, and a
+    world of assumed scale resembles a measured one.
 
     Args:
         angles_deg: (n, 17), ANGLE_NAMES order; NaN where there is no pose.
@@ -61,10 +61,10 @@ def rows(angles_deg: NDArray[np.float64], joints_m: NDArray[np.float64]) -> Rows
 
 
 def with_pose(given: Rows) -> Rows:
-    """The rows (m, 20) in which all is known: frames without a pose are dropped.
+    """The complete rows (m, 20): frames without a pose are dropped.
 
-    An observation that was not made is no symbol: a hidden Markov model takes the next one, and
-    carrying the old pose on would show it a standstill that was not seen.
+    A missing observation is no symbol: a hidden Markov model takes the next one, and repeating the
+    old pose would show it a standstill that was not seen.
     """
     return given[np.isfinite(given).all(axis=1)]
 
@@ -72,11 +72,11 @@ def with_pose(given: Rows) -> Rows:
 def features(given: Rows) -> Features:
     """The ten angles of each frame as a point of a space without seams, shape (n, 16).
 
-    The observation stays the paper's, the space in which symbols are neighbours is ours. As
+    The observation is the paper's; the space, which defines neighbouring symbols, is ours. As
     numbers, theta_X = 179 and -179 lie far apart; with theta_X = 90 (arm forward) every theta_Z is
     the same pose; and (theta_X, theta_Z), (180 - theta_X, theta_Z + 180) are one direction. So
-    upper arms and thighs enter as the direction that their pair of angles gives in the body's own
-    frame, Rz(theta_Z) Rx(theta_X) (0, 1, 0), and elbows as cosine and sine.
+    upper arms and thighs enter as the direction of their two angles in the body's own frame,
+    Rz(theta_Z) Rx(theta_X) (0, 1, 0), and elbows as cosine and sine.
 
     Source: Huang & Chung 2004, section 5.1 (P57); section 2.2, M_N^S (C3, C4).
     """
@@ -105,12 +105,13 @@ BEARING_NAMES: Final = (
     *(f"{joint}_{axis}" for chain in CHAINS for joint in chain for axis in "xyz"),
     *(f"travel_{axis}" for axis in "xyz"),
 )
-"""The order of a vector; a model says for which order it was trained."""
+"""The order of a vector; a model records the order that it was trained with."""
 
 TRAVEL_POSES: Final = 5
-"""Travel is the way since so many poses before: a third of a second, half a step."""
+"""Number of poses over which travel is measured: a third of a second, half a step."""
 TRAVEL_WEIGHT: Final = 2.0
-"""Travel varies less than directions do: so weighted, a floor of variance fits both."""
+"""Weight of travel, which varies less than directions: one lower bound of variance then fits
+both."""
 
 _TURNS: Final = np.array(
     [
@@ -126,9 +127,9 @@ _ROOT: Final = ROW_NAMES.index("root_x")
 def bearings(given: Rows) -> Bearings:
     """The feature vectors of rows with a pose, (n, 27).
 
-    A direction is a limb's own axis in the body's frame; travel is seen from the body: to its
-    side, up, and ahead. Without travel no model could distinguish walking towards a person
-    from walking in place: limbs alone are all that the paper's ten angles speak of.
+    A direction is a limb's own axis in the body's frame; travel is in the body's frame too: to its
+    side, up, and ahead. Without travel no model could distinguish walking towards a person from
+    walking in place: the paper's ten angles describe limbs alone.
 
     Source: section 2.2 (M_N^S, M_S^F: C3, C4) for the directions.
     """
@@ -159,8 +160,8 @@ def _point(turns_deg: NDArray[np.float64], shown: NDArray[np.float64]) -> None:
 def _move(
     root: NDArray[np.float64], yaw_deg: NDArray[np.float64], shown: NDArray[np.float64]
 ) -> None:
-    """Write the weighted way of the root since TRAVEL_POSES poses before, or since the first, in
-    the body's frame."""
+    """Write the weighted displacement of the root over TRAVEL_POSES poses, or since the first,
+    in the body's frame."""
     for row in range(len(root)):
         way = TRAVEL_WEIGHT * (root[row] - root[max(row - TRAVEL_POSES, 0)])
         s, c = math.sin(math.radians(yaw_deg[row])), math.cos(math.radians(yaw_deg[row]))

@@ -1,4 +1,4 @@
-"""What a stream holds besides postures: how people stand, and how well a performance must fit."""
+"""Models for a stream's other parts: how people stand, and how well a performance must fit."""
 
 from collections.abc import Sequence
 from typing import Final
@@ -11,15 +11,15 @@ from recognizer.features import Bearings
 Array = NDArray[np.float64]
 
 VARIANCE_FLOOR: Final = 0.01
-"""Of an entry, 6 degrees: as the models of postures have it."""
+"""Lower bound of an entry's variance, 6 degrees: as in the posture models."""
 OPENING_POSES: Final = 3
-"""A performance begins in standing: so many poses of it show how people stand."""
+"""Number of poses at a performance's start that show how people stand."""
 NORMAL_MAD: Final = 1.4826
 """Standard deviation of a normal variable over its median absolute deviation."""
 
 
 def standing(shown: Sequence[Sequence[Bearings]]) -> tuple[Array, Array]:
-    """Mean and variance (27,) of how people stand, from the sequences of all postures.
+    """Mean and variance (27,) of standing people, from the sequences of all postures.
 
     Medians: a sequence that was cut in the middle of its motion does no harm.
     """
@@ -30,11 +30,11 @@ def standing(shown: Sequence[Sequence[Bearings]]) -> tuple[Array, Array]:
 
 
 def fit_of(shown: Sequence[Bearings], mean: Array, variance: Array) -> float:
-    """Log density of a frame at its likeliest state, the mean of each sequence, their median.
+    """Median over sequences of the mean log density of a frame at its likeliest state.
 
     Args:
         shown: The sequences of one posture.
-        mean: (s, 27) of its states; `variance` alike.
+        mean: (s, 27) means of its states; `variance` alike.
     """
     level = np.log(2 * np.pi * variance).sum(axis=1)
 

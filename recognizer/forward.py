@@ -13,10 +13,10 @@ from common.compiled import compiled
 def forward(
     start: NDArray[np.float64], transition: NDArray[np.float64], log_emission: NDArray[np.float64]
 ) -> Floats:
-    """log P(observations | posture), shape (p,); 0 where nothing was observed.
+    """log P(observations | posture), shape (p,); 0 without observations.
 
-    Each step is divided by its sum, and so are the densities by their largest; the logarithms are
-    added up, so that a sequence of any length stays within floating point.
+    Each step is divided by its sum, and the densities by their maximum; the logarithms are summed,
+    so that a sequence of any length stays within floating point.
 
     Args:
         start: (p, s) probabilities.

@@ -21,13 +21,13 @@ from recognizer.postures import (
 
 VERSION: Final = 3
 MAX_BYTES: Final = 10_000_000
-"""No model is larger unpacked: fifteen postures take 50 kB."""
+"""Upper bound of an unpacked model, bytes: fifteen postures take 50 kB."""
 
 KINDS: Final[dict[Recognizer, type[SymbolModel | DensityModel]]] = {
     "default": DensityModel,
     "paper": SymbolModel,
 }
-"""What class of model each recogniser has."""
+"""Model class of each recogniser."""
 
 PROBABILITIES: Final = ("start", "transition", "emission")
 """Arrays whose rows sum to 1."""
@@ -36,18 +36,18 @@ CURE: Final = "make one with `tritrack train --what postures`"
 
 
 class ModelError(ValueError):
-    """A file that holds no usable model; the text names the file, what is wrong and the cure."""
+    """A file without a usable model; the text names the file, the fault and the cure."""
 
 
 class Kind(msgspec.Struct, frozen=True):
-    """As much of a header as every version has."""
+    """The part of a header that every version has."""
 
     format: Literal["tritrack postures"]
     version: int
 
 
 class Header(Kind, frozen=True, forbid_unknown_fields=True):
-    """What the numbers mean."""
+    """The full header: the meaning of the numbers."""
 
     postures: tuple[str, ...]
     features: tuple[str, ...]
@@ -55,7 +55,7 @@ class Header(Kind, frozen=True, forbid_unknown_fields=True):
 
 
 def save(model: PostureModel, path: Path) -> None:
-    """Write a model, whole or not at all; the same model gives the same bytes.
+    """Write a model completely or not at all; the same model gives the same bytes.
 
     Raises:
         ModelError: When the file cannot be written.
@@ -74,11 +74,11 @@ def load(path: Path, postures: Collection[str] | None = None) -> PostureModel:
     """Read a model that `save` wrote.
 
     Args:
-        postures: The names that the model must know, no fewer and no others; None takes any.
+        postures: The names that the model must have, exactly; None accepts any.
 
     Raises:
-        ModelError: When the file cannot be read, is damaged, foreign, of another version or
-            feature order, holds no probabilities, or knows other postures.
+        ModelError: When the file cannot be read, is damaged, foreign, of another version or feature
+            order, holds no probabilities, or has other postures.
     """
     try:
         model = _read(path)

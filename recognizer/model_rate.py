@@ -1,6 +1,6 @@
-"""What is tracked, at the rate that the models know: the paper's, whatever the cameras' (P1).
+"""Tracked frames at the models' rate: the paper's, whatever the cameras' (P1).
 
-Models count frames: a squat that a camera of 60 frames a second shows would be one in slow motion.
+Models count frames: a squat from a camera of 60 frames a second would look like slow motion.
 """
 
 import math
@@ -13,27 +13,27 @@ from numpy.typing import NDArray
 from recognizer.features import Rows
 
 PERIOD_S: Final = 1 / 15
-"""Of the frames that models learn from."""
+"""Frame rate of the models' training data, Hz."""
 EARLY: Final = 0.4
-"""By so much of it a frame may come before it is due: clocks of cameras tremble."""
+"""Share of a period by which a frame may come early: camera clocks jitter."""
 LONGEST: Final = 4
-"""A frame stands for fewer of them: no camera is that slow, so frames are missing."""
+"""Largest number of model frames for one frame: no camera is slower, so frames are missing
+beyond."""
 BACK: Final = 1.5
-"""A frame that is due in more of them than that was taken before the last one: a clip that began
-again."""
+"""Model frames until the next due one, beyond which time ran backwards: a clip began again."""
 
 
 class State(NamedTuple):
-    """When the next frame is due; None: the first one is, whenever it comes."""
+    """When the next frame is due; None: at the first frame, whenever it comes."""
 
     due_s: float | None = None
 
 
 def step(state: State, time_s: float) -> tuple[State, int]:
-    """How many frames of the models' one that was taken then stands for.
+    """Number of model frames for a frame captured at a given time.
 
-    None of a faster camera's that comes before one is due, several of a slower one's; one of each
-    of a camera of that rate.
+    A faster camera's frame gives none before one is due, a slower one's gives several; a camera of
+    that rate gives one each.
     """
     due_s = time_s if state.due_s is None else state.due_s
     after = (time_s - due_s) / PERIOD_S
@@ -44,7 +44,7 @@ def step(state: State, time_s: float) -> tuple[State, int]:
 
 
 def counts(times_s: Sequence[float] | NDArray[np.float64]) -> NDArray[np.int64]:
-    """How many of the models' frames each of those stands for that were taken then, (n,)."""
+    """Number of model frames for each captured frame, (n,)."""
     state, found = State(), []
     for time_s in times_s:
         state, due = step(state, float(time_s))
@@ -53,10 +53,10 @@ def counts(times_s: Sequence[float] | NDArray[np.float64]) -> NDArray[np.int64]:
 
 
 def at_model_rate(times_s: Sequence[float] | NDArray[np.float64], rows: Rows) -> Rows:
-    """Rows as the models count them: each so often as `step` says.
+    """Rows at the models' rate: each repeated as `step` says.
 
     Args:
-        times_s: (n,) when the frames were taken.
+        times_s: (n,) capture times.
         rows: (n, 20), ROW_NAMES order.
     """
     return np.repeat(rows, counts(times_s), axis=0)

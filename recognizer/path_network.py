@@ -12,59 +12,59 @@ from common.compiled import compiled
 from recognizer.postures import Array, DensityModel
 
 SCALE: Final = 0.3
-"""Weight of a log density: neighbouring frames say nearly the same."""
+"""Weight of a log density: neighbouring frames are nearly equal."""
 CAP_LIMB, CAP_TRAVEL = 4.0, 36.0
-"""Most that an entry counts in a frame, squared deviations: two for a limb's direction, in which
+"""Upper bound of an entry's squared deviation in a frame: two for a limb's direction, in which
 people differ, six for travel, in which they do not."""
 LOOSENESS: Final = 2.0
-"""By how much variances are widened for people who were not learnt from."""
+"""Factor by which variances are widened for people outside the training data."""
 FILLER: Final = 10.0
-"""Log density that the filler gives any pose: so bad may a posture's own poses be."""
+"""Log density of the filler for any pose: a posture's own poses may be as bad."""
 REST_CAP: Final = 4.0
-"""Mean squared deviation of an entry up to which a pose is that of standing."""
+"""Mean squared deviation of an entry up to which a pose counts as standing."""
 STILL, MOVING = 0.2, 0.6
-"""How fast limbs turn in standing and in motion: change of all directions within three frames."""
+"""Speed of limbs in standing and in motion: change of all directions within three frames."""
 SLOWNESS: Final = 3.0
-"""Weight of what slowness says for standing."""
+"""Weight of slowness as evidence for standing."""
 STILL_LOSS = -8.0
-"""The most that it says against it in a frame."""
+"""Upper bound of the evidence against it in a frame."""
 ENTER, EXIT, CHANGE = 8.0, 8.0, 3.0
-"""What it costs a path to enter a posture, to leave one, and to go from standing to something
-unknown or back."""
+"""Costs of a path for entering a posture, leaving one, and changing between standing and
+something unknown."""
 
 Records = NDArray[np.int64]
-"""(p s + 2, LAST) or with one more column: what the best path into each state remembers."""
+"""(p s + 2, LAST) or with one more column: the record of the best path into each state."""
 ONSET, COUNT, PHASE, LAST = 0, 1, 2, 3
-"""What a path remembers of the posture that it is in: its first frame, how often the course was
-gone through, whether it is in its second half; and of one that is over: its last frame."""
+"""Columns of a record. Of the posture in progress: its first frame, the number of repetitions,
+whether it is in its second half. Of an ended one also its last frame."""
 
 REACH: Final = 0.75
-"""Of the distance from standing at the height of a posture: whoever does not get so far does
-something else. Of a repetition's way too: so far it must go, and so far back."""
+"""Share of the distance between standing and the height of a posture that a motion must cover;
+for a repetition, the share of the way there and of the way back."""
 LONG_FRAMES: Final = 1000
-"""After so many, where a chain began no longer matters."""
+"""Number of steps after which the start of a chain no longer matters."""
 RARE: Final = 0.05
-"""A state in which a posture is for a smaller share of its time marks no repetition."""
+"""Smallest share of a posture's time in a state that can mark a repetition."""
 
 
 class PathNetwork:
-    """What a model's network needs at every frame, computed once."""
+    """Inputs of a model's network at every frame, computed once."""
 
     def __init__(self, model: DensityModel) -> None:
-        """Of the postures in the order of the model."""
+        """Names of the postures in the order of the model."""
         self.model = model
         with np.errstate(divide="ignore"):
             self.log_transition = np.log(model.transition)
 
     @cached_property
     def share(self) -> Array:
-        """How much of its time each posture is in each state, (p, s)."""
+        """Share of its time that each posture is in each state, (p, s)."""
         long = np.linalg.matrix_power(self.model.transition, LONG_FRAMES)
         return np.asarray(long[:, 0])
 
     @cached_property
     def away(self) -> Array:
-        """How far each state is from standing, (p, s); 0 where it is rare."""
+        """Distance of each state from standing, (p, s); 0 where it is rare."""
         apart = np.linalg.norm(self.model.mean - self.model.rest_mean, axis=2)
         return np.asarray(np.where(self.share > RARE, apart, 0.0))
 
@@ -75,10 +75,10 @@ class PathNetwork:
 
     @cached_property
     def side(self) -> NDArray[np.int64]:
-        """On which end of the way of a repetition each state lies, (p, s): 1 at the far one, -1 at
-        the near one, 0 between.
+        """End of a repetition's way on which each state lies, (p, s): 1 the far one, -1 the near
+        one, 0 between.
 
-        A repetition goes from the state farthest from this one to that farthest from standing.
+        A repetition goes from the state farthest from this one to the state farthest from standing.
         """
         mean, every = self.model.mean, np.arange(len(self.model.mean))
         far = mean[every, self.away.argmax(axis=1)][:, np.newaxis]
@@ -98,9 +98,9 @@ def emissions(
 
     Args:
         seen: (27,) feature vector.
-        speed: How fast the limbs turn and the body goes.
+        speed: Speed of the limbs and of the body.
         mean: (p, s, 27) of the postures' states; `variance` alike.
-        rest: (27,) how people stand; `rest_variance` alike.
+        rest: (27,) mean of standing people; `rest_variance` alike.
     """
     postures, states, entries = mean.shape
     count = postures * states
@@ -128,8 +128,8 @@ def emissions(
 
 @compiled
 def _way_into(k: int, score: Vector, log_transition: Floats, enter: float) -> tuple[float, int]:
-    """The best way into a state of a posture: its score, and from which of that posture's states;
-    -1 from outside, at the score of `enter`."""
+    """The best transition into a state of a posture: its score, and the source state in that
+    posture; -1 from outside, at the score of `enter`."""
     states = log_transition.shape[1]
     p, s = k // states, k % states
     best, origin = enter, -1
@@ -142,7 +142,7 @@ def _way_into(k: int, score: Vector, log_transition: Floats, enter: float) -> tu
 
 @compiled
 def _turned(side: int, own: NDArray[np.int64]) -> None:
-    """Count a repetition where a path comes to the far end after the near one."""
+    """Count a repetition where a path reaches the far end after the near one."""
     if side > 0 and own[PHASE] == 0:
         own[COUNT] += 1
         own[PHASE] = 1
@@ -165,12 +165,12 @@ def advance(
 
     Args:
         score: (p s + 2,) of the best path that ends in each state.
-        record: (p s + 2, LAST) what that path did since it entered its posture.
-        over: (p s + 2, LAST + 1) the same of the last performance on that path that is over, and
-            its last frame; -1 where there is none.
-        emission: What `emissions` gives for this frame.
+        record: (p s + 2, LAST) that path's record since it entered its posture.
+        over: (p s + 2, LAST + 1) the record of the last ended performance on that path, with its
+            last frame; -1 where there is none.
+        emission: `emissions` of this frame.
         log_transition: (p, s, s).
-        side: (p, s) on which end of a repetition each state lies: 1 far, -1 near, 0 between.
+        side: (p, s) end of a repetition on which each state lies: 1 far, -1 near, 0 between.
         frame: Number of this frame.
         open_: Whether a posture may begin: once a person was seen standing.
 

@@ -1,4 +1,4 @@
-"""Whether what the best path went through was a performance, and of which posture."""
+"""Whether a stretch of the best path was a performance, and of which posture."""
 
 from typing import Final, NamedTuple
 
@@ -11,16 +11,17 @@ from recognizer.path_network import COUNT, LAST, ONSET, SCALE, PathNetwork
 from recognizer.postures import Array
 
 LEAST_FRAMES: Final = 10
-"""A shorter motion is a twitch: the quickest squat takes 1.5 s."""
+"""Shortest performance, seconds: the quickest squat takes 1.5 s, anything shorter is a twitch."""
 LEAST_STATES: Final = 3
-"""Of the five states of a posture, so many must be met: a part of a posture is not the posture."""
+"""Number of a posture's five states that must be met: a part of a posture is not the posture."""
 MISFIT: Final = 42.0
-"""Nats a frame by which a performance may fit worse than those learnt from: some one and a half an
-entry, as people differ. A hand at the head fits a raised arm worse by 150 and more."""
+"""Nats per frame by which a performance may fit worse than those of the training data: some one
+and a half per entry, as people differ. A hand at the head fits a raised arm worse by 150 and
+more."""
 RIVAL: Final = 9.0
-"""Nats a frame by which a posture that holds may fit worse than one that does not."""
+"""Nats per frame by which a held posture may fit worse than one with motion."""
 DRIFT, DRIFT_SHARE = 0.09, 0.3
-"""By how much travel may differ from the posture's over a performance, leg lengths in five frames
+"""Deviation of the travel from the posture's over a performance, leg lengths in five frames
 times its weight, and as a share of it: people walk slower or faster. Steps back are no walk."""
 
 
@@ -32,18 +33,18 @@ class Event(NamedTuple):
     last: int
     """First and last frame, counted in calls of `step`."""
     posterior: float
-    """Of this posture among all and the filler, in [0, 1]."""
+    """Probability of this posture among all and the filler, in [0, 1]."""
     times: int
-    """How often the posture's course was gone through: strides, kicks, circles."""
+    """Number of repetitions: strides, kicks, circles."""
 
 
 def event_of(network: PathNetwork, over: NDArray[np.int64], rows: Rows) -> Event | None:
-    """A performance, if it was one: the likeliest of the postures that it can be.
+    """A performance, if it was one: the likeliest of the possible postures.
 
     Args:
-        network: Of all postures.
-        over: (LAST + 1,) what the best path did.
-        rows: (n, 20) what was seen meanwhile.
+        network: The network of all postures.
+        over: (LAST + 1,) record of the best path.
+        rows: (n, 20) its frames.
     """
     model, first, last = network.model, int(over[ONSET]), int(over[LAST])
     shown, logs = bearings(rows), model.log_emission(rows)
@@ -60,11 +61,11 @@ def event_of(network: PathNetwork, over: NDArray[np.int64], rows: Rows) -> Event
 
 
 def _holds(network: PathNetwork, posture: int, shown: Bearings, logs: Array) -> bool:
-    """Whether frames show the posture, and all of it.
+    """Whether frames show the posture completely.
 
     Args:
-        network: Of all postures.
-        posture: Its number.
+        network: The network of all postures.
+        posture: Index of the posture.
         shown: (n, 27) the frames.
         logs: (n, s) their log densities in the posture's states.
     """

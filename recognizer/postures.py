@@ -1,4 +1,4 @@
-"""Fifteen hidden Markov models side by side: what a motion is likeliest to be."""
+"""Fifteen hidden Markov models in parallel: the likeliest posture of a motion."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
@@ -35,38 +35,38 @@ POSTURES: Final = {
     "kick_right_forward": "kicking",
     "kick_left_side": "kicking",
 }
-"""The postures, and to which of the paper's five movements each belongs. The movements are the
-paper's; the list of postures is ours, for its own was lost with figure 16 (P56)."""
+"""The postures, and the paper's movement to which each belongs. The five movements are the
+paper's; the list of postures is ours, because the paper's was lost with figure 16 (P56)."""
 
 STATES: Final = 5
 """Hidden states of each model (section 5.1)."""
 
 
 LEAST_FIT: Final[dict[Recognizer, float]] = {"default": 23.0, "paper": -3.2}
-"""Log-likelihood of a frame, on average over a motion, below which the motion is none that was
-taught. Of 420 held-out synthetic performances 2 % lie below; of the same ones, judged by models to
-whose posture was not taught, 77 % and 35 %: the others have a near relative."""
+"""Mean log-likelihood of a motion's frames below which it is no known posture. Of 420 held-out
+synthetic performances 2 % lie below; of the same ones, judged by models trained without their
+posture, 77 % and 35 %: the others have a similar posture."""
 
 PER_POSTURE: Final = ("start", "transition", "emission", "mean", "variance", "fit")
-"""Arrays of a model with a row for each posture; the others all postures share."""
+"""Arrays of a model with a row for each posture; the others are common to all."""
 
 
 class Card(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What a model was made from: its file carries this along."""
+    """Provenance of a model, stored in its file."""
 
     recognizer: Recognizer
     topology: Topology
     seed: int
     sequences: dict[str, int]
-    """How many sequences of each posture were learnt from."""
+    """Number of training sequences of each posture."""
     frames: int
     performers: tuple[str, ...] = ()
-    """Who was seen in training: their recognition does not count."""
+    """People in the training data: their recognition does not count as a test."""
 
 
 @dataclass(frozen=True, eq=False)
 class PostureModel(ABC):
-    """The models of all postures side by side; p postures, in the order of `names`."""
+    """The models of all postures; p postures, in the order of `names`."""
 
     names: tuple[str, ...]
     start: Array  # (p, STATES)
@@ -75,13 +75,13 @@ class PostureModel(ABC):
 
     @abstractmethod
     def log_emission(self, seen: Rows) -> Array:
-        """log of the probability or density that each state shows each of these rows, all with a
-        pose: (n, p, STATES)."""
+        """log of the probability or density of each of these rows, all with a pose, in each
+        state: (n, p, STATES)."""
 
 
 @dataclass(frozen=True, eq=False)
 class SymbolModel(PostureModel):
-    """The paper's: ten angles of a frame are one of 64 symbols (P57)."""
+    """The paper's model: ten angles of a frame are one of 64 symbols (P57)."""
 
     FEATURES = FEATURE_NAMES
 
@@ -89,7 +89,7 @@ class SymbolModel(PostureModel):
     emission: Array  # (p, STATES, SYMBOLS), nowhere zero
 
     def log_emission(self, seen: Rows) -> Array:
-        """Of the nearest codewords."""
+        """Symbols of the nearest codewords."""
         observed = symbols(self.codebook, features(seen))
         return self._log_emission[observed]
 
@@ -100,18 +100,19 @@ class SymbolModel(PostureModel):
 
 @dataclass(frozen=True, eq=False)
 class DensityModel(PostureModel):
-    """The better one: each state is a normal density of all limbs' directions and the travel."""
+    """The better model: each state is a normal density of all limbs' directions and the travel."""
 
     FEATURES = BEARING_NAMES
 
     mean: Array  # (p, STATES, 27)
     variance: Array  # (p, STATES, 27), positive
-    rest_mean: Array  # (27,), how people stand
+    rest_mean: Array  # (27,), mean of standing people
     rest_variance: Array  # (27,), positive
-    fit: Array  # (p,), mean log density of a frame in the middle performance learnt from
+    fit: Array  # (p,), mean log density of a frame in the median training performance
 
     def log_emission(self, seen: Rows) -> Array:
-        """Of independent normal entries; the square is multiplied out into two matrix products."""
+        """Log densities of independent normal entries; the square is expanded into two matrix
+        products."""
         shown = bearings(seen)
         by_square, by_entry, level = self._products
         logs = np.square(shown) @ by_square + shown @ by_entry + level
@@ -119,7 +120,7 @@ class DensityModel(PostureModel):
 
     @cached_property
     def _products(self) -> tuple[Array, Array, Array]:
-        """What squares and entries are multiplied with, (27, p STATES), and what is added."""
+        """Factors of squares and entries, (27, p STATES), and the constant."""
         entries = self.mean.shape[2]
         weight = 1.0 / self.variance.reshape(-1, entries)
         pull = self.mean.reshape(-1, entries) * weight
@@ -128,9 +129,9 @@ class DensityModel(PostureModel):
 
 
 def joined(known: PostureModel, new: PostureModel) -> PostureModel:
-    """Both in one; of a posture that both have, the new one's model, in the known one's place.
+    """Both models in one; where both have a posture, the new one's replaces the known one's.
 
-    What all postures share comes from `known`.
+    The common arrays come from `known`.
     """
     names = tuple(dict.fromkeys((*known.names, *new.names)))
     own = [name for name in vars(new) if name in PER_POSTURE]
@@ -152,7 +153,7 @@ def joined(known: PostureModel, new: PostureModel) -> PostureModel:
 def scored(model: PostureModel, seen: Rows) -> dict[str, float]:
     """log P(O | posture) of each posture for rows (n, 20) that all have a pose.
 
-    Always finite. Without any there is no observation, and each is log 1 = 0.
+    Always finite. Without rows each is log 1 = 0.
 
     Source: Huang & Chung 2004, section 5.2 (P58).
     """
@@ -161,12 +162,12 @@ def scored(model: PostureModel, seen: Rows) -> dict[str, float]:
 
 
 def log_likelihoods(model: PostureModel, given: Rows) -> dict[str, float]:
-    """The same of any rows: frames without a pose say nothing."""
+    """The same for any rows: frames without a pose are left out."""
     return scored(model, with_pose(given))
 
 
 def name(model: PostureModel, given: Rows) -> str:
-    """The likeliest posture, the earlier in the model where two tie; "" where no pose was seen."""
+    """The likeliest posture; ties go to the earlier one in the model; "" without any pose."""
     if not len(with_pose(given)):
         return ""
     return likeliest(log_likelihoods(model, given))

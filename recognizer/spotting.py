@@ -1,4 +1,4 @@
-"""Naming as it happens: the motion under way, in a sliding window that is judged at every frame."""
+"""Live recognition: the motion in progress, in a sliding window that is judged at every frame."""
 
 from dataclasses import dataclass, replace
 from typing import Final, NamedTuple
@@ -10,11 +10,11 @@ from recognizer.features import FEATURE_NAMES, ROW_NAMES, Features, Rows, featur
 from recognizer.postures import PostureModel, likeliest, scored
 
 NAMED_FROM_FRAMES: Final = 15
-"""A second of motion: less of it fits too many postures."""
+"""Shortest motion, frames, a second: less fits too many postures."""
 
 STILL_FRAMES: Final = 12
-"""Frames of standstill that separate two motions: shorter ones occur within a motion, between two
-kicks."""
+"""Frames of standstill that separate two motions: shorter ones occur within a motion, between
+two kicks."""
 
 STILL: Final = 0.15
 """Spread of feature vectors (root mean square distance from their mean; 0.15 is one limb swaying by
@@ -28,34 +28,34 @@ one."""
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """What is remembered of the last frames; the oldest first."""
+    """The last frames; the oldest first."""
 
     model: PostureModel | None
-    """None: motions are followed, but not named."""
+    """None: motions are followed, but not recognised."""
     window_frames: int
     rows: Rows  # (n, 20), n <= window_frames
     seen: Features  # (n, 16), of the same frames
     frames: tuple[int, ...] = ()
-    """Which calls of `step`, counted from 0, had these poses."""
+    """The numbers of the `step` calls, from 0, that had these poses."""
     next_frame: int = 0
     moving_frames: int = 0
     """Poses since the last standstill ended; 0 during one."""
     named: bool = False
     """The last judgement gave a name."""
     missed: int = 0
-    """How many frames without a pose came last."""
+    """Number of frames without a pose since the last pose."""
 
 
 class Judgement(NamedTuple):
-    """What the window looks like."""
+    """Judgement of the window."""
 
     name: str
-    """The likeliest posture; "" while too little, or nothing but standing, was seen."""
+    """The likeliest posture; "" while there was too little motion, or only standing."""
     log_likelihoods: dict[str, float]
     """log P(window | model) of each posture; empty where there is no name."""
     first: int
     last: int
-    """First and last frame of the window, counted in calls of `step`; both that of this call where
+    """First and last frame of the window, as numbers of `step` calls; both are this call's where
     the window is empty."""
 
 
@@ -63,18 +63,18 @@ NOTHING: Final = Judgement("", {}, 0, 0)
 
 
 def init(model: PostureModel | None, window_frames: int) -> State:
-    """Nothing seen yet."""
+    """The initial state."""
     nothing = np.empty((0, len(ROW_NAMES)))
     return State(model, window_frames, rows=nothing, seen=np.empty((0, len(FEATURE_NAMES))))
 
 
 def step(state: State, row: NDArray[np.float64] | None) -> tuple[State, Judgement]:
-    """Take one frame and judge the window that ends with it.
+    """Process one frame and judge the window that ends with it.
 
-    The models know motions and no standing. So a standstill (the opening posture, say) has no
-    name; a motion is named when a second of it was seen, without what came before the standstill;
-    and one that ends in standing keeps its name until nothing but standing is in the window. A
-    frame without a pose adds nothing.
+    The models have no standing. So a standstill (the opening posture, say) has no name; a motion
+    gets its name after a second, without the frames before the standstill; and a motion that ends
+    in standing keeps its name until only standing is in the window. A frame without a pose adds
+    nothing.
 
     Args:
         row: (20,) ROW_NAMES order; None or NaN where there is no pose.
@@ -88,7 +88,7 @@ def step(state: State, row: NDArray[np.float64] | None) -> tuple[State, Judgemen
 
 
 def motion_of(given: Rows, window_frames: int) -> Rows:
-    """The rows that a window at the end of a recording would be judged by: what models learn from.
+    """The rows by which a window at the end of a recording would be judged: the training input.
 
     Args:
         given: (n, 20), NaN in rows without a pose or from before the motion.
@@ -124,7 +124,7 @@ def _remember(state: State, row: NDArray[np.float64] | None) -> State:
 
 
 def _cut(state: State) -> State:
-    """Without what came before the last standstill ended, once enough came after it."""
+    """The rows after the end of the last standstill, once there are enough of them."""
     if state.moving_frames < _needed(state):
         return state
     keep = state.moving_frames

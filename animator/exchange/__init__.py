@@ -1,5 +1,5 @@
-"""Files of motion for other programs than those that read BVH."""
+"""Motion files for programs that do not read BVH."""
 
 
 class LibraryMissing(RuntimeError):
-    """A format whose library is not installed; the text says how to get it."""
+    """A format whose library is not installed; the text says how to install it."""

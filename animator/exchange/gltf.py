@@ -1,7 +1,7 @@
-"""glTF: a skinned figure of sticks that moves, one binary file, for browsers and engines.
+"""glTF: an animated skinned stick figure in one binary file, for browsers and engines.
 
 Source: Khronos glTF 2.0 specification, sections 3.6 (accessors), 3.7.3 (skins), 3.11 (animations),
-4 (GLB). Metres, +y up, the figure faces +z, as the specification has it.
+4 (GLB). Metres, +y up, the figure faces +z, as the specification requires.
 """
 
 import struct
@@ -24,7 +24,7 @@ DTYPES: Final = {"float32": FLOAT, "uint16": USHORT, "uint32": UINT}
 
 
 class _Buffer:
-    """The binary half of the file, and what lies where in it."""
+    """The binary half of the file, and its layout."""
 
     def __init__(self) -> None:
         self.data = bytearray()
@@ -32,8 +32,8 @@ class _Buffer:
         self.accessors: list[Facts] = []
 
     def add(self, values: NDArray[Any], target: int | None = None) -> int:
-        """Lay an array into the buffer; its accessor's number. Its bytes are a multiple of four, as
-        those of all arrays that the figure has: so each begins where the format wants it."""
+        """Append an array to the buffer; returns its accessor's index. All arrays of the figure
+        have a multiple of four bytes, so each is aligned as the format requires."""
         start, content = len(self.data), np.ascontiguousarray(values).tobytes()
         self.data += content
         view = {"buffer": 0, "byteOffset": start, "byteLength": len(content)}
@@ -56,15 +56,15 @@ def gltf_bytes(skeleton: Skeleton, motion: Motion, step_s: float) -> bytes:
     """A GLB file.
 
     Args:
-        skeleton: A body.
-        motion: (n,) of it.
-        step_s: Seconds a frame.
+        skeleton: The body.
+        motion: (n,) its motion.
+        step_s: Seconds per frame.
     """
     buffer = _Buffer()
     figure = _figure(buffer, sticks_of(skeleton))
     moves = _animation(buffer, motion, step_s)
     inverse = np.tile(np.eye(4, dtype=np.float32), (len(skeleton.bones), 1, 1))
-    inverse[:, 3, :3] = -rest_origins_m(skeleton)  # a matrix is written column by column
+    inverse[:, 3, :3] = -rest_origins_m(skeleton)  # a matrix is stored column by column
     content = {
         "asset": {"version": "2.0", "generator": "tritrack"},
         "scene": 0,
@@ -90,7 +90,7 @@ def gltf_bytes(skeleton: Skeleton, motion: Motion, step_s: float) -> bytes:
 
 
 def _nodes(skeleton: Skeleton) -> list[Facts]:
-    """The bones, then a node at the end of each that carries no other, then the skinned mesh."""
+    """The bones, then a node at the end of each bone without children, then the skinned mesh."""
     nodes: list[Facts] = []
     for i, bone in enumerate(skeleton.bones):
         children = [n for n, other in enumerate(skeleton.bones) if other.parent == i]

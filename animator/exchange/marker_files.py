@@ -13,12 +13,13 @@ from common.body.extremities import ALL_JOINT_NAMES
 
 MM_IN_M: Final = 1000.0
 MOST_C3D_FRAMES: Final = 65_535
-"""The format counts them in 16 bits: programs read no more, and say nothing of the others."""
+"""Largest number of frames: the format counts them in 16 bits, and programs silently read no
+more."""
 INVALID: Final = -1.0
-"""Residual of a point that was not seen, by which programs know it."""
+"""Residual that marks a point as not seen."""
 TO_FORWARD_X: Final = np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])
-"""From a run's axes (+x left of who faces camera 1, +y up, +z towards it) to OpenSim's (+x forward,
-+y up, +z right): a quarter turn about the vertical."""
+"""From a run's axes (+x left of a person who faces camera 1, +y up, +z towards it) to OpenSim's
+(+x forward, +y up, +z right): a quarter turn about the vertical."""
 
 
 def forward_x(places_m: Vector) -> Vector:
@@ -31,10 +32,10 @@ def trc_text(joints_m: Joints, step_s: float, name: str) -> str:
     """A TRC file: the joints as markers of the same names, mm, OpenSim's axes.
 
     Args:
-        joints_m: (n, 15, 3) or (n, 22, 3) in even steps; NaN, "nan" in the file, where
-            nothing was seen: OpenSim writes it so, and refuses rows that end in an empty cell.
-        step_s: Seconds a frame.
-        name: Of the file, which its first line repeats.
+        joints_m: (n, 15, 3) or (n, 22, 3) in even steps; unknown ones are NaN, "nan" in the file:
+            OpenSim writes it so, and refuses rows that end in an empty cell.
+        step_s: Seconds per frame.
+        name: Name of the file, which its first line repeats.
     """
     rate_hz, frames, markers = f"{1.0 / step_s:.6f}", len(joints_m), joints_m.shape[1]
     head = [
@@ -58,9 +59,9 @@ def c3d_bytes(joints_m: Joints, step_s: float) -> bytes:
     """A C3D file: the joints as points of the same names, mm, OpenSim's axes.
 
     Args:
-        joints_m: (n, 15, 3) or (n, 22, 3) in even steps, at most MOST_C3D_FRAMES; NaN, an invalid
-            point in the file, where nothing was seen.
-        step_s: Seconds a frame.
+        joints_m: (n, 15, 3) or (n, 22, 3) in even steps, at most MOST_C3D_FRAMES; unknown ones are
+            NaN, an invalid point in the file.
+        step_s: Seconds per frame.
 
     Raises:
         LibraryMissing: Without ezc3d.
@@ -82,7 +83,7 @@ def c3d_bytes(joints_m: Joints, step_s: float) -> bytes:
         "residuals": np.where(unseen, INVALID, 0.0),
         "camera_masks": np.zeros((7, *points.shape[1:]), np.bool_),
     }
-    with tempfile.TemporaryDirectory() as folder:  # it writes to paths alone
+    with tempfile.TemporaryDirectory() as folder:  # the library writes only to paths
         path = Path(folder) / "points.c3d"
         content.write(str(path))
         return path.read_bytes()

@@ -1,8 +1,8 @@
-"""OpenSim: a model of the run's own skeleton, and its motion as coordinates of that model.
+"""OpenSim: a model of the run's own skeleton, and its motion in that model's coordinates.
 
-Every bone is a massless body on three turns in the order of the BVH (about z, x, y); markers of the
-landmarks' names sit on their ends, so that OpenSim's inverse kinematics runs on the TRC file too.
-Source: OpenSim 4 documentation, CustomJoint, SpatialTransform, storage (.mot) files.
+Every bone is a massless body with three rotations in the order of the BVH (about z, x, y); markers
+with the landmarks' names are at their ends, so that OpenSim's inverse kinematics runs on the TRC
+file too. Source: OpenSim 4 documentation, CustomJoint, SpatialTransform, storage (.mot) files.
 """
 
 from collections.abc import Iterator
@@ -18,9 +18,9 @@ from common.body.extremities import ALL_JOINT_NAMES
 TURNS: Final = (("rz", (0, 0, 1)), ("rx", (1, 0, 0)), ("ry", (0, 1, 0)))
 SHIFTS: Final = (("tx", (1, 0, 0)), ("ty", (0, 1, 0)), ("tz", (0, 0, 1)))
 QUARTER: Final = "0 1.5707963267948966 0"
-"""The turn from a run's axes to OpenSim's, as the model's ground frame has it."""
+"""Rotation from a run's axes to OpenSim's, in the form of the model's ground frame."""
 MASS: Final = "<mass>0.001</mass><inertia>1e-6 1e-6 1e-6 0 0 0</inertia>"
-"""OpenSim's solver of movement wants some; the model is for kinematics alone."""
+"""Mass of each body, kg: OpenSim's solver requires one; the model is for kinematics alone."""
 
 
 def osim_text(skeleton: Skeleton) -> str:
@@ -54,7 +54,7 @@ def mot_text(motion: Motion, step_s: float, name: str) -> str:
 
 
 def _coordinates(bones: int) -> list[str]:
-    """In the order of the file: the hips' place, then each bone's turns."""
+    """Coordinates in the order of the file: the hips' place, then each bone's turns."""
     shifts = [f"Hips_{name}" for name, _ in SHIFTS]
     return [*shifts, *(f"{bone.name}_{name}" for bone in BONES[:bones] for name, _ in TURNS)]
 
@@ -102,7 +102,7 @@ def _axis(bone: str, root: bool, place: str, name: str, axis: tuple[int, ...]) -
 
 
 def _markers(skeleton: Skeleton) -> Iterator[str]:
-    """Every landmark once: where a bone starts, or where it ends."""
+    """Every landmark once, at a bone's start or end."""
     at: dict[str, tuple[str, Vector]] = {}
     for bone, tip_m in zip(skeleton.bones, skeleton.tips_m, strict=True):
         at.setdefault(bone.starts, (bone.name, np.zeros(3)))

@@ -1,4 +1,4 @@
-"""A figure of sticks that a skeleton moves: a cylinder along each bone, bound to it alone."""
+"""A stick figure for a skeleton: a cylinder along each bone, bound to it alone."""
 
 from typing import Final, NamedTuple
 
@@ -24,7 +24,7 @@ class Sticks(NamedTuple):
     faces: NDArray[np.uint32]
     """(m, 3)"""
     bones: NDArray[np.uint16]
-    """(n,) which bone a point goes with."""
+    """(n,) index of each point's bone."""
 
 
 def sticks_of(skeleton: Skeleton) -> Sticks:

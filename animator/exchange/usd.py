@@ -1,7 +1,7 @@
-"""USD: a skinned figure of sticks that moves, for video and game pipelines, by Pixar's library.
+"""USD: an animated skinned stick figure, for video and game pipelines, by Pixar's library.
 
 Source: OpenUSD 26.11, UsdSkel (the schemas SkelRoot, Skeleton, SkelAnimation and their binding).
-Metres, +y up, the figure faces +z; one time code a frame, the first is 0.
+Metres, +y up, the figure faces +z; one time code per frame, from 0.
 """
 
 import tempfile
@@ -24,10 +24,10 @@ def usd_bytes(skeleton: Skeleton, motion: Motion, step_s: float, ending: str = "
     """A USD file.
 
     Args:
-        skeleton: A body.
-        motion: (n,) of it.
-        step_s: Seconds a frame.
-        ending: Of the file's name, which tells the form: `.usda` is text, all others are binary.
+        skeleton: The body.
+        motion: (n,) its motion.
+        step_s: Seconds per frame.
+        ending: Suffix of the file's name: `.usda` means text, all others binary.
 
     Raises:
         LibraryMissing: Without usd-core.
@@ -67,7 +67,7 @@ def _define_skeleton(stage: "Usd.Stage", skeleton: Skeleton) -> "UsdSkel.Skeleto
 
 
 def _define_motion(stage: "Usd.Stage", skeleton: Skeleton, motion: Motion) -> "UsdSkel.Animation":
-    """Of each bone its place and turn in its parent's axes, frame by frame."""
+    """Place and turn of each bone in its parent's axes, frame by frame."""
     from pxr import UsdSkel, Vt
 
     moves = UsdSkel.Animation.Define(stage, "/Body/Skeleton/Motion")
@@ -80,7 +80,7 @@ def _define_motion(stage: "Usd.Stage", skeleton: Skeleton, motion: Motion) -> "U
     for frame, root_m in enumerate(motion.root_m):
         offsets_m[0] = root_m
         places.Set(Vt.Vec3fArray.FromNumpy(offsets_m), frame)
-        own = np.ascontiguousarray(turns[frame], np.float32)  # x, y, z, w, as the library keeps it
+        own = np.ascontiguousarray(turns[frame], np.float32)  # x, y, z, w, the library's order
         quaternions.Set(Vt.QuatfArray.FromNumpy(own), frame)
     return moves
 
@@ -108,7 +108,7 @@ def _define_figure(stage: "Usd.Stage", sticks: Sticks) -> "UsdGeom.Mesh":
 
 
 def _paths(skeleton: Skeleton) -> list[str]:
-    """Each bone's name behind those that carry it, as UsdSkel tells a tree: parents first."""
+    """Each bone's path, its name after its ancestors', as UsdSkel writes a tree: parents first."""
     paths: list[str] = []
     for bone in skeleton.bones:
         paths.append(f"{paths[bone.parent]}/{bone.name}" if bone.parent >= 0 else bone.name)
@@ -116,14 +116,14 @@ def _paths(skeleton: Skeleton) -> list[str]:
 
 
 def _shifts(places_m: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Matrices (n, 4, 4) that turn nothing; the library multiplies rows, the place stands last."""
+    """Pure translations (n, 4, 4); the library multiplies rows, so the place is in the last one."""
     shifts = np.tile(np.eye(4), (len(places_m), 1, 1))
     shifts[:, 3, :3] = places_m
     return shifts
 
 
 def _written(stage: "Usd.Stage", ending: str) -> bytes:
-    with tempfile.TemporaryDirectory() as folder:  # the library writes to paths alone
+    with tempfile.TemporaryDirectory() as folder:  # the library writes only to paths
         path = Path(folder) / f"body{ending}"
         stage.GetRootLayer().Export(str(path))
         return path.read_bytes()

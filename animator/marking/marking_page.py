@@ -1,4 +1,4 @@
-"""The marking page's server: pictures, the newest sheet to who comes, and what browsers said."""
+"""The marking page's server: pictures, the newest sheet for browsers, and their messages."""
 
 import queue
 import re
@@ -17,25 +17,25 @@ from animator.page.page_server import SITE, File, PageServer, site
 OWN_SITE: Final = Path(__file__).parent / "site"
 STILL: Final = re.compile(r"/still/([12])/(\d{1,6}|live)\.jpg", re.ASCII)
 LIVE: Final = -1
-"""A still's place: the camera's newest picture."""
+"""Index that stands for the camera's newest picture."""
 
 JpegOf = Callable[[int, int], bytes | None]
-"""A still by its camera (1 or 2) and place (from 0, or LIVE), None where there is none."""
+"""A still by its camera (1 or 2) and index (from 0, or LIVE), None where there is none."""
 
 
 def still_address(camera: int, place: int) -> str:
-    """Where a browser finds a still."""
+    """Address of a still."""
     return f"/still/{camera}/{'live' if place == LIVE else place}.jpg"
 
 
 class MarkingPage:
-    """What a browser sees at `address`, until `close`.
+    """A page for browsers at `address`, until `close`.
 
     Args:
-        hello: What every browser is told first; its run is filled in.
-        jpeg_of: The pictures; called in the server's thread.
-        port: Of this machine, free.
-        entrance: Where it listens, and to whom.
+        hello: First message to every browser; its run is filled in.
+        jpeg_of: Gives the pictures; called in the server's thread.
+        port: A free port of this machine.
+        entrance: Where the page listens, and who may enter.
 
     Raises:
         PageError: When the port is 0, taken or not allowed.
@@ -50,24 +50,24 @@ class MarkingPage:
         self._shown: bytes | None = None
         self._server = PageServer(port, self._greeting, entrance, self._file, MOST_SAID_BYTES)
         self.address = self._server.address
-        """Where a browser finds the page."""
+        """Address of the page."""
 
     def show(self, shown: Shown) -> None:
-        """Tell every browser, and those that come later, the newest sheet."""
+        """Send every browser, now and later, the newest sheet."""
         said = msgspec.json.encode(shown)
         with self._lock:
             self._shown = said
         self._server.tell(said)
 
     def tell(self, text: str, well: bool) -> None:
-        """Say what became of a wish."""
+        """Report the outcome of a request."""
         self._server.tell(msgspec.json.encode(Told(text, well)))
 
     def next_wish(self) -> Marked | Save | None:
-        """What a browser said, the oldest first; None when nothing waits.
+        """The browsers' messages, oldest first; None when there is none.
 
         Raises:
-            SheetError: When no page of ours says so.
+            SheetError: When it is no message of our page.
         """
         try:
             return heard(self._server.asked.get_nowait())

@@ -1,4 +1,4 @@
-"""What the marking page and a browser tell each other, as JSON: points, and what they give."""
+"""JSON messages between the marking page and a browser: points, and the resulting calibration."""
 
 import math
 from typing import Any, Final, Literal
@@ -10,17 +10,17 @@ from common.body.observation import Pixel
 Size = tuple[int, int]
 """Width and height, pixels."""
 MOST_MARKS: Final = 60
-"""Points in each picture: far more than anyone clicks."""
+"""Largest number of points in a picture."""
 MOST_SAID_BYTES: Final = 30_000
-"""A sheet of so many points, and some."""
+"""Upper bound of a sheet's size, bytes."""
 FARTHEST_M: Final = 1000.0
-"""No room is larger."""
+"""Largest distance in a room, metres."""
 
 Kind = Literal["pole", "floor", "wall"]
 
 
 class SheetError(ValueError):
-    """A sheet that the page cannot mean: the text says where."""
+    """A sheet that our page cannot send: the text says where."""
 
 
 class Mark(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -29,35 +29,35 @@ class Mark(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     kind: Kind
     """The top of a pole, or a point of the marker on the floor or on the wall."""
     px: tuple[Pixel | None, Pixel | None] = (None, None)
-    """In the pictures of camera 1 and 2; the centre of the top-left pixel is (0.5, 0.5)."""
+    """Pixels in the pictures of camera 1 and 2; the centre of the top-left pixel is (0.5, 0.5)."""
     at_m: tuple[float, float] | None = None
-    """Where a pole stands, x and z."""
+    """Position of a pole, x and z, metres."""
 
 
 class Sheet(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """All that was clicked, and the numbers beside."""
+    """All clicked points, and the numbers typed beside them."""
 
     marks: tuple[Mark, ...]
     numbers: dict[str, float | None]
-    """What was measured by other means; None: not said."""
+    """Values measured by other means; None: not given."""
 
 
 class Marked(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="marked"):
-    """A browser has another sheet."""
+    """A browser's new sheet."""
 
     sheet: Sheet
     by: str
-    """Which browser, by a word of its own."""
+    """Id of the browser."""
     count: int
-    """Which of its sheets."""
+    """Number of its sheet."""
 
 
 class Save(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="save"):
-    """A browser wants the calibration to be written."""
+    """A browser's request to write the calibration."""
 
 
 class Number(msgspec.Struct, frozen=True):
-    """A number that is asked for beside the points."""
+    """A number that the page asks for beside the points."""
 
     key: str
     label: str
@@ -71,90 +71,90 @@ class Pictures(msgspec.Struct, frozen=True):
     number: int
     name: str
     stills: tuple[str, ...]
-    """Addresses, in the video's order; of a camera that runs one, whose picture is always new."""
+    """Addresses, in the video's order; for a live camera one, whose picture is always new."""
     frames: tuple[int, ...]
-    """Which frame of the video each still is."""
+    """The frame of the video of each still."""
     runs: bool
 
 
 class Hello(msgspec.Struct, frozen=True, tag="hello", tag_field="kind"):
-    """What a browser must know before it can draw."""
+    """The first message to a browser: what it needs to draw."""
 
     title: str
     run: int
-    """Another one is another process: a page begins afresh."""
+    """Id of this process: with another one a page starts afresh."""
     method: str
     size: Size
-    """Of every picture."""
+    """Size of every picture."""
     pictures: tuple[Pictures, ...]
     numbers: tuple[Number, ...]
     hints: dict[str, tuple[str, str]]
-    """Of each kind of mark what to click, in camera 1 and 2."""
+    """For each kind of mark what to click, in camera 1 and 2."""
     writes: str
     """The file that "save" writes; "": there is none."""
     most_marks: int = MOST_MARKS
 
 
 class Seen(msgspec.Struct, frozen=True):
-    """What the points tell of one camera."""
+    """Results from the points of one camera."""
 
     known: bool
     text: str
-    """What is still missing, where it is not known."""
+    """What is still missing, where they are unknown."""
     facts: tuple[tuple[str, str], ...] = ()
     off_px: tuple[float | None, ...] = ()
-    """How far each mark is from where the result has it."""
+    """Distance of each mark from its place by the result."""
     expected_px: tuple[Pixel | None, ...] = ()
-    """Where that is."""
+    """That place."""
     lines_px: tuple[tuple[Pixel, Pixel], ...] = ()
-    """What is drawn of the result: poles from foot to top, or the two markers."""
+    """Drawing of the result: poles from foot to top, or the two markers."""
 
 
 class Plan(msgspec.Struct, frozen=True):
     """The room from above, metres."""
 
     cameras: tuple[tuple[float, float, float, float], ...]
-    """x, z, bearing (0: along +x, 90: along +z) and width of view, degrees."""
+    """x, z, bearing (0: along +x, 90: along +z) and angle of view, degrees."""
     marks: tuple[tuple[float, float, int], ...] = ()
-    """x, z, and which mark."""
+    """x, z, and index of the mark."""
 
 
 class Solved(msgspec.Struct, frozen=True):
-    """What a sheet gives."""
+    """The result of a sheet."""
 
     cameras: tuple[Seen, ...]
     names: tuple[str, ...]
-    """Of the marks."""
+    """Names of the marks."""
     plan: Plan | None = None
     worst: str = ""
-    """The point to look at first, by name."""
+    """Name of the point to check first."""
     worst_at: tuple[int, int] | None = None
     """Its camera (0 or 1) and mark."""
     whole: bool = False
-    """Whether there is enough for a result of all cameras."""
+    """Whether there are enough points for a result of all cameras."""
 
 
 class Shown(msgspec.Struct, frozen=True, tag="shown", tag_field="kind"):
-    """A sheet and what it gives."""
+    """A sheet and its result."""
 
     sheet: Sheet
     by: str
     count: int
     solved: Solved
     kept: str
-    """Where the points are, or why they are not."""
+    """Where the points are, or why there are none."""
     well: bool
 
 
 class Told(msgspec.Struct, frozen=True, tag="told", tag_field="kind"):
-    """What became of a wish."""
+    """The outcome of a request."""
 
     text: str
     well: bool
 
 
 def refuse_sheet(sheet: Sheet, hello: Hello) -> None:
-    """Refuse what no click on this page gives.
+    """Refuse a sheet that no click on this page gives.
 
     Raises:
         SheetError: At the first fault.
@@ -178,10 +178,10 @@ def refuse_sheet(sheet: Sheet, hello: Hello) -> None:
 
 
 def heard(said: bytes) -> Marked | Save:
-    """What a browser said.
+    """A browser's message, checked.
 
     Raises:
-        SheetError: When no page of ours says so.
+        SheetError: When it is no message of our page.
     """
     kinds: Any = Marked | Save
     try:

@@ -1,1 +1,1 @@
-"""The live page: the room in three dimensions, and beside it what is known of the body."""
+"""The live page: the room in three dimensions, and data about the body beside it."""

@@ -1,4 +1,4 @@
-"""The pages' door: where a page listens, which port is free, and who may come in."""
+"""Access to the pages: address and port of a page, and who may enter."""
 
 import secrets
 import socket
@@ -15,7 +15,7 @@ EVERY_ADDRESS: Final = ("0.0.0.0", "::")
 BY_SETTINGS: Final = "set page.port to another one"
 """How a live run takes another port."""
 BY_OPTION: Final = f"{BY_SETTINGS} (or --port)"
-"""What to change where the command has the option as well."""
+"""The cure where the command has the option too."""
 
 
 class PageError(RuntimeError):
@@ -23,29 +23,29 @@ class PageError(RuntimeError):
 
 
 class Entrance(NamedTuple):
-    """Where a page listens, and what lets a browser in."""
+    """Where a page listens, and who may enter."""
 
     host: str = HOST
     name: str = ""
-    """Of a proxy that stands before it, beside this machine's own."""
+    """Host name of a proxy before it, beside this machine's own names."""
     token: str = ""
-    """What a browser must bring; "": nothing, where no other machine gets here."""
+    """The token that a browser must send; "": none, where no other machine can connect."""
 
 
 def entrance_of(settings: PageSettings) -> Entrance:
-    """The entrance that settings ask for, with a token of its own where others get to it."""
+    """The entrance by the settings, with a new token where other machines can connect."""
     token = "" if is_loopback(settings.host) else secrets.token_urlsafe()
     return Entrance(settings.host, settings.name, token)
 
 
 def address_of(entrance: Entrance, port: int) -> str:
-    """By what a browser calls the page."""
+    """Host names by which browsers address the page."""
     host = socket.gethostname() if entrance.host in EVERY_ADDRESS else entrance.host
     return f"http://[{host}]:{port}" if ":" in host else f"http://{host}:{port}"
 
 
 def invitation_of(entrance: Entrance, port: int) -> str:
-    """The page's address with what lets a browser in: for the person who started it alone."""
+    """The page's address with its token: for the user who started it alone."""
     token = f"/?token={entrance.token}" if entrance.token else ""
     return f"{address_of(entrance, port)}{token}"
 
@@ -53,14 +53,14 @@ def invitation_of(entrance: Entrance, port: int) -> str:
 def is_own(host: str, origin: str, entrance: Entrance = Entrance()) -> bool:
     """Whether a connection comes from this very page.
 
-    Any web page may try to connect to this machine, and a foreign name may be made to point here;
-    a browser tells both by these headers. A program that is no browser sends no origin. Where a
-    token is asked for, the page may have any name: no foreign one has the cookie.
+    Any web page may try to connect to this machine, and a foreign name may resolve to it; these
+    headers of a browser reveal both. A program other than a browser sends no origin. Where a token
+    is required, the page may have any name: no foreign one has the cookie.
 
     Args:
         host: The request's `Host`, as 127.0.0.1:8080; a forwarded port may differ from ours.
         origin: The request's `Origin`, or "".
-        entrance: The page's.
+        entrance: The page's entrance.
     """
     try:
         named, whence = urlsplit(f"//{host}").hostname, urlsplit(origin).netloc
@@ -71,18 +71,18 @@ def is_own(host: str, origin: str, entrance: Entrance = Entrance()) -> bool:
 
 
 def cookie_of(port: int) -> str:
-    """The name under which a browser keeps the token: cookies do not tell ports apart."""
+    """Name of the cookie with the token: cookies do not distinguish ports."""
     return f"tritrack_{port}"
 
 
 def has_token(entrance: Entrance, query: str, cookies: Sequence[str], port: int) -> bool:
-    """Whether a request brings the token, in its address or as a cookie.
+    """Whether a request contains the token, in its address or as a cookie.
 
     Args:
-        entrance: The page's.
-        query: What stands behind the `?`.
+        entrance: The page's entrance.
+        query: The part of the address after the `?`.
         cookies: The request's `Cookie` headers.
-        port: The page's.
+        port: The page's port.
     """
     pairs = [each.strip().partition("=") for line in cookies for each in line.split(";")]
     brought = [value for name, _, value in pairs if name == cookie_of(port)]
@@ -94,12 +94,13 @@ def has_token(entrance: Entrance, query: str, cookies: Sequence[str], port: int)
 
 
 def refuse_port(port: int, host: str = HOST, cure: str = BY_OPTION) -> None:
-    """A server that quietly took the next free port would make the address told to the user wrong.
+    """Raise where a port is not free: a server on the next free port would make the printed address
+    wrong.
 
     Args:
-        port: Of the page.
-        host: Where it listens.
-        cure: How the command in hand takes another port.
+        port: The page's port.
+        host: The address that it listens on.
+        cure: How the present command takes another port.
 
     Raises:
         PageError: When the port is 0, taken or not allowed, or the host is not this machine's.
@@ -116,6 +117,6 @@ def refuse_port(port: int, host: str = HOST, cure: str = BY_OPTION) -> None:
 
 
 def unusable(port: int, why: str, host: str = HOST, cure: str = BY_OPTION) -> str:
-    """What to say of a port that cannot be had."""
+    """The message for an unavailable port."""
     where = "" if host == HOST else f" of {host}"
     return f"cannot open the page on port {port}{where}: {why}; close what uses it, or {cure}"

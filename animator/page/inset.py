@@ -1,4 +1,4 @@
-"""What a camera shows on the page: its silhouette or picture, and the fitted body's contour."""
+"""A camera's picture on the page: its silhouette or picture, and the fitted body's contour."""
 
 import math
 from typing import Final
@@ -19,28 +19,28 @@ Image = NDArray[np.uint8]
 """(H, W, 3), red, green, blue."""
 
 NIGHT: Final = np.array([28, 33, 41], np.float32)
-"""What is not the person, where no picture may be shown."""
+"""Colour of the background, where no picture may be shown."""
 SEEN: Final = np.array([80, 116, 124], np.float32)
-"""The person as the camera's silhouette has it."""
+"""Colour of the person in the camera's silhouette."""
 TINT: Final = 0.35
-"""Share of SEEN over a picture: enough to tell the silhouette, the picture stays readable."""
+"""Opacity of SEEN over a picture: the silhouette is visible, the picture stays readable."""
 
 WIDTH_PX: Final = 320
-"""Least width of an inset: at 160x120 a contour would be as thick as an arm."""
+"""Smallest width of an inset, pixels: at 160x120 a contour would be as thick as an arm."""
 END_POINTS: Final = 64
-"""Points on an end of a limb: the contour is within 3 % of the radius."""
+"""Number of points on an end of a limb: the contour is within 3 % of the radius."""
 GOLDEN_RAD: Final = math.pi * (3.0 - math.sqrt(5.0))
-"""Turn from one point to the next that spreads points evenly over a ball."""
+"""Turn between successive points that distributes them evenly over a ball, radians."""
 SHIFT: Final = 4
-"""Bits of a pixel's fraction that cv2 draws with."""
+"""Fractional bits of a pixel in cv2's drawing functions."""
 FARTHEST: Final = 2**20
-"""No corner lies farther out, in those fractions: cv2's own numbers would overflow."""
+"""Largest coordinate, in those fractions: cv2's numbers would overflow beyond."""
 
 
 def limb_ends(figure: Figure) -> NDArray[np.float64]:
     """Points on both ends of each limb, (10, 2 * END_POINTS, 3), metres: their hull is the limb.
 
-    A trunk, a head and a leg end in a flat section, an arm in a ball: as they are matched.
+    A trunk, a head and a leg end in a flat section, an arm in a ball, as in matching.
     """
     turn = np.linspace(0.0, 2.0 * math.pi, END_POINTS, endpoint=False)
     circle = np.stack([np.cos(turn), np.zeros_like(turn), np.sin(turn)], axis=1)
@@ -56,7 +56,7 @@ def limb_ends(figure: Figure) -> NDArray[np.float64]:
 def limb_contours(camera: Camera, ends_m: NDArray[np.float64]) -> list[Vector]:
     """The contour of each limb in a camera's picture: convex, (k, 2) pixels, in the order of LIMBS.
 
-    A limb that is not wholly before the camera has none: (0, 2).
+    A limb that is not wholly in front of the camera has none: (0, 2).
     """
     pixels = project(camera, ends_m.reshape(-1, 3)).reshape(*ends_m.shape[:2], 2)
     return [
@@ -68,7 +68,7 @@ def limb_contours(camera: Camera, ends_m: NDArray[np.float64]) -> list[Vector]:
 
 
 def inset(report: View, picture: Picture | None) -> Image:
-    """The silhouette over the picture where there is one, else over NIGHT; WIDTH_PX wide or more.
+    """The silhouette over the picture, or over NIGHT without one; at least WIDTH_PX wide.
 
     A picture that cannot be decoded is left out.
     """
@@ -90,7 +90,7 @@ def draw_contours(image: Image, contours: list[Vector], width_px: int) -> None:
     Args:
         image: Changed in place.
         contours: From `limb_contours`.
-        width_px: Width of the picture that the contours' pixels are of.
+        width_px: Width of the picture to whose pixels the contours refer.
     """
     times = image.shape[1] / width_px
     for contour, colour in zip(contours, limb_colours(), strict=True):

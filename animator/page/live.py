@@ -1,4 +1,4 @@
-"""The live page: what is shown to every browser, what was shown before, and what they ask for."""
+"""The live page: present and past messages to every browser, and the browsers' commands."""
 
 import queue
 import threading
@@ -20,18 +20,18 @@ from common.npz_file import Facts
 from common.rig.camera import Rig
 
 MOST_BYTES: Final = 32_000_000
-"""Of a run that goes on: some minutes, with pictures one."""
+"""Upper bound of the kept messages, bytes: some minutes of a run, with pictures one."""
 
 
 class LivePage:
-    """What a browser sees at `address`, until `close`.
+    """A page for browsers at `address`, until `close`.
 
     Args:
-        title: Of the run.
-        port: Of this machine, free.
-        commands: Whether anything hears what the user asks for.
-        entrance: Where it listens, and to whom.
-        most_bytes: Of frames that are kept for a browser that comes late.
+        title: The run's title.
+        port: A free port of this machine.
+        commands: Whether any process carries out the user's commands.
+        entrance: Where the page listens, and who may enter.
+        most_bytes: Upper bound of the frames that are kept for late browsers.
 
     Raises:
         PageError: When the port is 0, taken or not allowed.
@@ -54,16 +54,16 @@ class LivePage:
         self._last: dict[type, bytes] = {}
         self._server = PageServer(port, self._greeting, entrance)
         self.address = self._server.address
-        """Where a browser finds the page."""
+        """Address of the page."""
 
     @property
     def watched(self) -> bool:
-        """Whether any browser looks."""
+        """Whether any browser shows the page."""
         return self._server.watched
 
     @property
     def was_watched(self) -> bool:
-        """Whether any browser ever looked."""
+        """Whether any browser ever showed it."""
         return self._server.came > 0
 
     def set_rig(self, rig: Rig) -> None:
@@ -72,7 +72,7 @@ class LivePage:
         self._tell(shown_room(rig))
 
     def show(self, snapshot: Snapshot, events: Sequence[Performance] = ()) -> None:
-        """Tell every browser the newest body, once the cameras are known."""
+        """Send every browser the newest body, once the cameras are known."""
         if self._rig is None:
             return
         frame = shown_frame(snapshot, events, self._rig, self._shown)
@@ -88,11 +88,11 @@ class LivePage:
         self._server.tell(said)
 
     def show_health(self, pulses: Sequence[Pulse]) -> None:
-        """Tell how the processes are doing."""
+        """Send how the processes are doing."""
         self._tell(ShownHealth(sorted(pulses, key=lambda each: each.process)))
 
     def answer(self, answer: Answer) -> None:
-        """Tell what became of a wish; who comes later is told that a recording goes on."""
+        """Send the outcome of a command; late browsers learn of a recording in progress."""
         said = msgspec.json.encode(Told(answer.what, answer.well, answer.text))
         with self._lock:
             if answer.well and answer.what == "record":
@@ -106,7 +106,7 @@ class LivePage:
         self._tell(Over(facts))
 
     def asked(self) -> list[Asked]:
-        """What browsers asked for since; what no page of ours would say is left out."""
+        """The browsers' commands since the last call; malformed ones are dropped."""
         wishes = []
         while True:
             try:
@@ -121,14 +121,14 @@ class LivePage:
         self._server.close()
 
     def _tell(self, message: msgspec.Struct) -> None:
-        """Tell every browser, and those that come later."""
+        """Send to every browser, now and later."""
         said = msgspec.json.encode(message)
         with self._lock:
             self._last[type(message)] = said
         self._server.tell(said)
 
     def _greeting(self) -> list[bytes]:
-        """What a browser is told that comes now: all of the run that is kept."""
+        """The messages to a new browser: all of the run that is kept."""
         with self._lock:
             last = dict(self._last)
             over = last.pop(Over, None)

@@ -1,4 +1,4 @@
-"""What the page's process and a browser tell each other, as JSON."""
+"""JSON messages between the page's process and a browser."""
 
 from typing import Final, Literal
 
@@ -13,37 +13,37 @@ from common.bus.messages import Performance, Status
 from common.npz_file import Facts
 
 CYLINDERS: Final = [i for i in range(len(LIMBS)) if i != HEAD]
-"""The limbs that are drawn as cylinders; the head is round."""
+"""Indices of the limbs that are drawn as cylinders; the head is round."""
 
 Numbers = list[float]
 
 
 class ShownView(msgspec.Struct, frozen=True):
-    """What one camera sees, in pixels of its working picture."""
+    """One camera's view, in pixels of its working picture."""
 
     size: tuple[int, int]
     outline: list[Numbers]
-    """The silhouette's contours, each x, y, x, y and so on, pixels."""
+    """Contours of the silhouette, each x, y, x, y and so on, pixels."""
     limbs: list[Numbers]
-    """The fitted body's, LIMBS order; one that is not before the camera has none."""
+    """Contours of the fitted body, LIMBS order; one behind the camera has none."""
     joints: Numbers
-    """Of ALL_JOINT_NAMES, or the first 15: x, y, x, y ...; empty where there is no pose."""
+    """ALL_JOINT_NAMES, or the first 15: x, y, x, y ...; empty where there is no pose."""
     score: float
     sees: str
-    """Which side of the body."""
+    """The side of the body that it sees: facade or flank."""
     hint: str
-    """What the person could do about it."""
+    """Advice to the user."""
     jpeg: bytes
     """The picture, where one may be shown."""
 
 
 class ShownPosture(msgspec.Struct, frozen=True):
-    """What the body is doing."""
+    """The recognised posture."""
 
     name: str
-    """Name of the posture under way, else of the last one performed."""
+    """Name of the posture in progress, else of the last one performed."""
     doing: str
-    """"" while nothing is under way."""
+    """"" while none is in progress."""
     times: int
     rivals: list[tuple[str, float]]
     """The likeliest names and their probabilities, best first."""
@@ -53,24 +53,25 @@ class ShownFrame(msgspec.Struct, frozen=True, tag="frame", tag_field="kind"):
     """An instant of the run."""
 
     number: int
-    """Counts what was shown: a browser that comes late may be told one twice."""
+    """Number of frames shown so far: a late browser may receive one twice."""
     frame: int
     time_s: float
     status: Status
     words: str
     trust: str
-    """How far the cameras are to be believed; "" while nothing tells."""
+    """Doubt about the cameras; "" while there is none."""
     from_views: str
     confidence: Numbers
-    """Of the joints of the views."""
+    """Confidence of the joints in the views."""
     solids: list[Numbers]
-    """Cylinders, then balls and eggs: place (3), turn (w, x, y, z), size (3), colour (3) each."""
+    """Cylinders, then balls and ellipsoids: place (3), turn (w, x, y, z), size (3), colour (3)
+    each."""
     angles: Numbers
     """ANGLE_NAMES order, degrees; empty where there is no pose."""
     views: list[ShownView | None]
     posture: ShownPosture | None
     events: tuple[Performance, ...]
-    """Performances that are over since the instant before."""
+    """Performances that have ended since the instant before."""
 
 
 class ShownHealth(msgspec.Struct, frozen=True, tag="health", tag_field="kind"):
@@ -80,26 +81,26 @@ class ShownHealth(msgspec.Struct, frozen=True, tag="health", tag_field="kind"):
 
 
 class ShownRoom(msgspec.Struct, frozen=True, tag="room", tag_field="kind"):
-    """Where the cameras stand."""
+    """The cameras' places."""
 
     middle: Numbers
     spectator: Numbers
     cameras: list[list[Numbers]]
-    """Of each its eye and the four corners of its picture, a metre before it."""
+    """For each its centre and the four corners of its picture, at a depth of one metre."""
 
 
 class Greeting(msgspec.Struct, frozen=True, tag="hello", tag_field="kind"):
-    """What a browser must know before it can draw."""
+    """The first message to a browser: what it needs to draw."""
 
     title: str
     run: int
-    """Another one is another run, or another process of this one: a page begins afresh."""
+    """Id of the run and process: with another one a page starts afresh."""
     commands: bool
-    """Whether anything hears what the user asks for."""
+    """Whether any process carries out the user's commands."""
     angles: tuple[str, ...] = ANGLE_NAMES
     joints: tuple[str, ...] = ALL_JOINT_NAMES
     large: int = len(JOINT_NAMES)
-    """Number of the joints that are drawn large, from the first on."""
+    """Number of joints that are drawn large, from the first on."""
     strokes: tuple[tuple[int, int], ...] = EXTREMITY_LINES
     """Hands and feet in the views, between joints."""
     limbs: tuple[str, ...] = LIMBS
@@ -110,7 +111,7 @@ class Greeting(msgspec.Struct, frozen=True, tag="hello", tag_field="kind"):
 
 
 class Told(msgspec.Struct, frozen=True, tag="told", tag_field="kind"):
-    """What became of a wish."""
+    """The outcome of a command."""
 
     what: str
     well: bool
@@ -124,6 +125,6 @@ class Over(msgspec.Struct, frozen=True, tag="over", tag_field="kind"):
 
 
 class Asked(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What the person at the page asks for."""
+    """A user's command at the page."""
 
     what: Literal["stop", "record", "end_record", "save", "measure", "background", "front", "back"]

@@ -1,4 +1,4 @@
-"""The live page's server: its files, and a WebSocket to each browser that is let in."""
+"""The live page's server: its files, and a WebSocket to each admitted browser."""
 
 import asyncio
 import logging
@@ -32,31 +32,32 @@ from common.npz_file import Facts
 
 SITE: Final = Path(__file__).parent / "site"
 SOCKET: Final = "/live"
-"""Where a page asks for its WebSocket."""
+"""Path of the WebSocket."""
 WAITING: Final = 256
-"""Messages that may wait for a browser: one that is slower loses the oldest."""
+"""Messages that may wait for a browser; a slower one loses the oldest."""
 MOST_SAID_BYTES: Final = 1000
-"""A browser says short things alone, where a page does not take more."""
+"""Upper bound of a browser's message, bytes, unless a page accepts more."""
 MOST_ASKED: Final = 16
-"""Most requests of pages that wait to be answered."""
+"""Largest number of requests that wait to be answered."""
 OPENS_S: Final = 20.0
-"""A server that does not listen by then never will, as where a name is looked up in vain."""
+"""Seconds within which a server must listen, or it never will, as where a name cannot be
+resolved."""
 MOST_BROWSERS: Final = 50
 POLICY: Final = (
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; "
     "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
 )
-"""The browser itself keeps the page from asking another server."""
+"""Header with which the browser keeps the page from contacting another server."""
 
 log = logging.getLogger(__name__)
 
 File = tuple[str, bytes]
-"""Kind (MIME) and content."""
+"""MIME type and content."""
 
 
 def is_of_ours(record: logging.LogRecord) -> bool:
-    """Whether the library's log tells of more than a connection whose peer asked for nothing, or
-    for nonsense: any user may open one, so we look ourselves whether the page answers."""
+    """Whether the library's log holds more than connections without a valid request: any user
+    may open one, so the launcher itself checks that the page answers."""
     kind = record.exc_info[0] if record.exc_info else None
     return kind is None or not issubclass(kind, InvalidHandshake | EOFError | OSError)
 
@@ -70,7 +71,7 @@ class _Door(NamedTuple):
 
 
 def live_file(path: str) -> File | None:
-    """The live page's file of a path, None where there is none."""
+    """The live page's file for a path, None where there is none."""
     return site(SITE).get(path)
 
 
@@ -78,15 +79,16 @@ class PageServer:
     """Serves the page on exactly this port, in a thread of its own.
 
     Args:
-        port: Of this machine, free.
-        greeting: What a browser is told when it comes, oldest first; called in the server's thread.
-        entrance: Where it listens, the loopback interface where nothing else is said, and to whom.
-        file_of: The page's file of a path, None where there is none; called in the server's thread.
-        most_said_bytes: A browser that says more at once is left.
+        port: A free port of this machine.
+        greeting: Messages to a new browser, oldest first; called in the server's thread.
+        entrance: Where it listens, the loopback interface by default, and who may enter.
+        file_of: The page's file for a path, None where there is none; called in the server's
+            thread.
+        most_said_bytes: A browser that sends more at once is disconnected.
 
     Raises:
-        PageError: When the port is 0, taken or not allowed, the host's name is none, or the server
-            does not listen within OPENS_S.
+        PageError: When the port is 0, taken or not allowed, the host's name is invalid, or the
+            server does not listen within OPENS_S.
     """
 
     def __init__(
@@ -100,9 +102,9 @@ class PageServer:
         refuse_port(port, entrance.host)
         self.address = address_of(entrance, port)
         self.asked: queue.Queue[bytes] = queue.Queue(MOST_ASKED)
-        """What browsers said."""
+        """Messages from browsers."""
         self.came = 0
-        """How many browsers have come so far."""
+        """Number of browsers so far."""
         self._greeting = greeting
         self._entrance, self._port = entrance, port
         self._file_of, self._most_said_bytes = file_of, most_said_bytes
@@ -110,7 +112,7 @@ class PageServer:
         opened: Future[_Door] = Future()
         self._log = logging.getLogger(f"{__name__}.socket")
         self._log.addFilter(is_of_ours)
-        self._log.setLevel(logging.WARNING)  # it would tell of every file that it serves
+        self._log.setLevel(logging.WARNING)  # it would log every file that it serves
         self._thread = threading.Thread(target=lambda: self._run(opened), name="page", daemon=True)
         self._thread.start()
         try:
@@ -121,12 +123,12 @@ class PageServer:
 
     @property
     def watched(self) -> bool:
-        """Whether any browser looks."""
+        """Whether any browser is connected."""
         return bool(self._browsers)
 
     def tell(self, message: bytes) -> None:
         """Send a message (JSON text) to every browser; never waits for one."""
-        with suppress(RuntimeError):  # the loop is closed: no page is there
+        with suppress(RuntimeError):  # the loop is closed: there is no page
             self._door.loop.call_soon_threadsafe(self._spread, message)
 
     def close(self) -> None:
@@ -136,7 +138,7 @@ class PageServer:
         self._thread.join()
 
     def _run(self, opened: "Future[_Door]") -> None:
-        """The server's thread; whatever keeps it from opening is for who waits."""
+        """The server's thread; exceptions while opening go to the caller."""
         try:
             asyncio.run(self._serve(opened))
         except Exception as error:
@@ -182,7 +184,7 @@ class PageServer:
         return Response(HTTPStatus.OK, "OK", _headers(*found), found[1])
 
     def _kept_token(self) -> Headers:
-        """Take the token from the address bar, where it would be read and handed on, to a cookie
+        """Move the token from the address bar, where it could be read and shared, to a cookie
         that no script reads and no foreign page makes a browser send."""
         cookie = f"{cookie_of(self._port)}={self._entrance.token}; HttpOnly; SameSite=Lax; Path=/"
         headers = _headers("text/plain", b"")
@@ -190,7 +192,7 @@ class PageServer:
         return headers
 
     async def _attend(self, connection: ServerConnection) -> None:
-        """Serve one browser until it goes."""
+        """Serve one browser until it disconnects."""
         waiting: asyncio.Queue[bytes] = asyncio.Queue(WAITING)
         greeting = self._greeting()
         self._browsers[connection] = waiting
@@ -216,7 +218,7 @@ class PageServer:
 async def _speak(
     connection: ServerConnection, greeting: list[bytes], waiting: asyncio.Queue[bytes]
 ) -> None:
-    """Send what is to be said, in its order."""
+    """Send the waiting messages, in order."""
     with suppress(ConnectionClosed):
         for message in greeting:
             await connection.send(message, text=True)
@@ -226,7 +228,7 @@ async def _speak(
 
 @cache
 def site(*folders: Path) -> dict[str, File]:
-    """A page's files by the path that a browser asks for; those of a later folder go before."""
+    """A page's files by their paths in requests; later folders take precedence."""
     files = {}
     for path in [path for folder in folders for path in sorted(folder.iterdir())]:
         kind = mimetypes.guess_type(path.name)[0] or "application/octet-stream"

@@ -1,4 +1,4 @@
-"""What is shown of an instant: messages of the bus as numbers that a browser draws."""
+"""Bus messages of an instant as numbers for a browser to draw."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -37,9 +37,9 @@ from common.rig.camera import Camera, Rig
 from common.rig.upright_camera import as_worked_on
 
 MOST_RIVALS: Final = 6
-"""Most postures that are shown with their probability."""
+"""Largest number of postures shown with their probability."""
 SMOOTH_PX: Final = 0.7
-"""A silhouette's corners lie no farther from its pixels."""
+"""Largest distance of a contour's corners from the silhouette's pixels, pixels."""
 FACING_WORDS: Final[dict[Facing, str]] = {"facade": "front or back", "flank": "side"}
 SOURCE_WORDS: Final[dict[ScaleSource, str]] = {
     "calibrated": "",
@@ -58,13 +58,13 @@ STATUS_WORDS: Final[dict[Status, str]] = {
 def shown_frame(
     snapshot: Snapshot, events: Sequence[Performance], rig: Rig, number: int
 ) -> ShownFrame | None:
-    """A body and what belongs to it; None where there is no body yet.
+    """A body and its context; None where there is no body yet.
 
     Args:
         snapshot: The newest of everything.
-        events: Performances that are over since the frame before.
+        events: Performances that have ended since the frame before.
         rig: The run's cameras.
-        number: How many frames were shown before.
+        number: Number of frames shown before.
     """
     body = snapshot.body
     if body is None:
@@ -88,7 +88,7 @@ def shown_frame(
 
 
 def trust_of(body: Body) -> str:
-    """How far the cameras are to be believed, by what both have seen lately."""
+    """The cameras' believability, by both views in the last seconds."""
     told = body.agreement
     if told is None:
         return ""
@@ -98,18 +98,17 @@ def trust_of(body: Body) -> str:
 
 
 def shown_room(rig: Rig) -> ShownRoom:
-    """Where the cameras stand, for the room to be drawn."""
+    """The cameras' places, for drawing the room."""
     seen = viewpoint(rig)
     cameras = [_pyramid(camera, (rig.width, rig.height)) for camera in rig.cameras]
     return ShownRoom(_rounded(seen.look_at), _rounded(seen.position), cameras)
 
 
 def shown_posture(posture: Posture | None, performed: str = "") -> ShownPosture | None:
-    """What is under way or was performed last, and its rivals' probabilities, where all postures
-    are as likely beforehand.
+    """The posture in progress or performed last, and its rivals' probabilities with equal priors.
 
-    The sliding window tells of rivals only where it means that posture too: it knows no standing,
-    and reaches back to what came before.
+    The sliding window gives rivals only where it has the same posture: it knows no standing, and
+    reaches back to earlier motion.
     """
     if posture is None:
         return None
@@ -175,7 +174,7 @@ def _view(
 
 
 def hint(body: Body, report: View) -> str:
-    """What the person could do about what this camera sees."""
+    """Advice to the user about this camera's view."""
     if report.fault:
         return f"the picture is {report.fault}"
     if report.person is None:
@@ -207,6 +206,6 @@ def _pyramid(camera: Camera, size: tuple[int, int]) -> list[Numbers]:
 
 
 def _rounded(values: ArrayLike, digits: int = 4) -> Numbers:
-    """Numbers in a row, none longer than it must be."""
+    """Flattened numbers, each as short as possible."""
     rounded: Numbers = np.asarray(values, np.float64).ravel().round(digits).tolist()
     return rounded

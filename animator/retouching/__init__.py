@@ -1,1 +1,1 @@
-"""The retouching page: what one camera does not show is said there, by pointer or by keyboard."""
+"""The retouching page: the user adds what one camera does not show, by pointer or keyboard."""

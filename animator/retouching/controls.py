@@ -1,4 +1,4 @@
-"""The panel of the retouching page: which frame, what it leaves open, and what is said of it."""
+"""The panel of the retouching page: the frame, its open questions, and the user's inputs."""
 
 from collections.abc import Callable
 from typing import Any, Final, Protocol
@@ -16,7 +16,7 @@ AUTO: Final = "auto"
 
 
 class Words(Deeds, Protocol):
-    """What the panel says to the page."""
+    """Events from the panel to the page."""
 
     def go_to_frame(self, frame: int) -> None:
         """Another frame of the video."""
@@ -32,12 +32,12 @@ class Words(Deeds, Protocol):
 
 
 class Controls:
-    """The panel of all browsers at the page.
+    """The panel in all browsers at the page.
 
     Args:
-        gui: Of the server.
+        gui: The server's GUI.
         take: The run.
-        page: Hears what is said.
+        page: Receives the events.
     """
 
     def __init__(self, gui: viser.GuiApi, take: Take, page: Words) -> None:
@@ -70,7 +70,7 @@ class Controls:
         self._listen()
 
     def show(self, row: int, joint: int, notes: Notes) -> None:
-        """Bring the panel up to date."""
+        """Update the panel."""
         frame = int(self.take.frame[row])
         annotations = held(notes, frame)
         self._slider.value = frame
@@ -81,16 +81,16 @@ class Controls:
         self.open.content = questions(self.take, row, notes)
 
     def tell(self, text: str, well: bool) -> None:
-        """What became of the last input."""
+        """The outcome of the last input."""
         self.kept.content = piece("retouch_kept.html", {"text": text, "well": well})
 
     def if_user(self, event: viser.GuiEvent[Any], act: Callable[..., None], *given: Any) -> None:
-        """Only what a browser said is an input; what we set ourselves comes back here too."""
+        """Only a browser's event is an input; our own changes raise events too."""
         if event.client is not None:
             act(*given)
 
     def turned(self) -> None:
-        """The list of ways to face was used."""
+        """The list of orientations was used."""
         self._page.face(self.orientation.value)
 
     def _listen(self) -> None:

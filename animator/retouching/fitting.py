@@ -1,4 +1,4 @@
-"""Fits the run again beside the retouching page, with all that was said so far (T22, T26)."""
+"""Repeated fits of the run beside the retouching page, with all inputs so far (T22, T26)."""
 
 import threading
 from collections.abc import Callable
@@ -8,28 +8,28 @@ from animator.take import Take
 from common.notes.notes import Notes
 
 END_S: Final = 10.0
-"""At the page's end: whoever fits has been told to leave off."""
+"""How long to wait at the page's end for a fit that was asked to stop."""
 
 Tell = Callable[[str, bool], object]
-"""Hears how it goes, and whether that is well."""
+"""Called with a status line, and whether it is good news."""
 Fit = Callable[[Notes, Callable[[str], object]], Take]
-"""Fits the run's video with these notes, tells how far it is, and gives the run as it is then.
-Raises FitError."""
+"""Fits the run's video with these notes, reports the progress, and returns the new run. Raises
+FitError."""
 Taken = Callable[[Take, Notes], object]
-"""Hears what a fit gave, and with which notes."""
+"""Called with a fit's result and its notes."""
 
 
 class FitError(RuntimeError):
-    """The run cannot be fitted again, and stays as it was: the text says why and what to do."""
+    """The run cannot be fitted again, and is unchanged: the text names the cause and the cure."""
 
 
 class Fitting:
     """One fit at a time, in a thread of its own.
 
     Args:
-        fit: Does it.
-        taken: Hears of it.
-        tell: Hears how it goes.
+        fit: The fitting function.
+        taken: Called with its result.
+        tell: Called with its progress.
     """
 
     def __init__(self, fit: Fit, taken: Taken, tell: Tell) -> None:
@@ -37,7 +37,7 @@ class Fitting:
         self._thread: threading.Thread | None = None
 
     def begin(self, notes: Notes) -> None:
-        """Fit with these notes, unless one goes on."""
+        """Fit with these notes, unless a fit is in progress."""
         if self._thread is not None and self._thread.is_alive():
             self._tell("the video is still being fitted", False)
             return
@@ -46,7 +46,7 @@ class Fitting:
         self._thread.start()
 
     def wait(self) -> None:
-        """Until the fit that goes on, if any, is over."""
+        """Wait for the fit in progress, if any."""
         if self._thread is not None:
             self._thread.join(END_S)
 

@@ -1,4 +1,4 @@
-"""The keyboard of the retouching page: all that a pointer does there, a pixel at a time."""
+"""The keyboard of the retouching page: every pointer action, a pixel at a time."""
 
 from collections.abc import Callable
 from typing import Final, Literal, NamedTuple, Protocol
@@ -6,48 +6,48 @@ from typing import Final, Literal, NamedTuple, Protocol
 import viser
 
 FAR_PX: Final = 10.0
-"""With shift a joint goes so many of the video's pixels instead of one."""
+"""Step of a joint with shift, the video's pixels; without it 1."""
 
 Letter = Literal["N", "I", "J", "K", "L", "F", "B", "O", "X", "U", "G", "V", "R"]
-"""W, A, S, D, Q, E and the arrow keys lead the spectator about, in viser's own client."""
+"""Keys that viser's own client uses to move the spectator: W, A, S, D, Q, E and the arrow keys."""
 
 
 class Deeds(Protocol):
-    """What keys ask of the page."""
+    """Key events for the page."""
 
     def choose(self, step: int) -> None:
-        """Another joint."""
+        """Choose another joint."""
 
     def nudge(self, across_px: float, down_px: float) -> None:
-        """Move it."""
+        """Move the chosen joint."""
 
     def flip_chosen(self) -> None:
         """Let the segment that ends there lean the other way."""
 
     def let_go(self) -> None:
-        """Give placed joints back."""
+        """Give placed joints back to the program."""
 
     def go(self, frames: int) -> None:
         """Another frame."""
 
     def look(self, step: int) -> None:
-        """Another frame that leaves something open."""
+        """Another frame with an open question."""
 
     def play(self) -> None:
-        """One frame after the other, or no longer."""
+        """Play or pause."""
 
     def undo(self) -> None:
-        """As it was before the last input."""
+        """Undo the last input."""
 
     def keep(self) -> None:
-        """Write what was said."""
+        """Save the inputs."""
 
     def fit_again(self) -> None:
-        """Fit the video anew with what was said."""
+        """Fit the video again with the inputs."""
 
 
 class Key(NamedTuple):
-    """A key, and what it does."""
+    """A key and its action."""
 
     letter: Letter
     shift: bool
@@ -85,7 +85,7 @@ KEYS: Final = (
 
 
 def bind(gui: viser.GuiApi, page: Deeds) -> None:
-    """Let a browser's keys reach the page; its command palette (Ctrl-K) lists them too."""
+    """Deliver a browser's keys to the page; its command palette (Ctrl-K) lists them too."""
 
     def told(key: Key) -> None:
         command = gui.add_command(
@@ -98,7 +98,7 @@ def bind(gui: viser.GuiApi, page: Deeds) -> None:
 
 
 def spoken_keys() -> list[tuple[str, str]]:
-    """Keys and what they do, for the page's help: the four of a move in one line."""
+    """Keys and their actions, for the page's help: the four of a move in one line."""
     moves = {key.letter for key in KEYS if key.does.startswith("move")}
     others = [(_name(key), key.does) for key in KEYS if key.letter not in moves]
     letters = " ".join(key.letter for key in KEYS if key.letter in moves and not key.shift)

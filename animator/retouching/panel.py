@@ -1,4 +1,4 @@
-"""What the retouching page says in pieces of HTML, from templates beside the code."""
+"""HTML of the retouching page, from templates beside the code."""
 
 from typing import Final
 
@@ -17,7 +17,7 @@ def piece(name: str, given: Facts) -> str:
 
 
 def questions(take: Take, row: int, notes: Notes) -> str:
-    """The frame, what was decided in it, and what it leaves open."""
+    """The frame, the decisions in it, and its open questions."""
     doubts = doubts_at(take, row, notes)
     given = {
         "frame": int(take.frame[row]),
@@ -30,7 +30,7 @@ def questions(take: Take, row: int, notes: Notes) -> str:
 
 
 def spoken(name: str) -> str:
-    """A name of the files as one says it: forward_left, l_upper_arm."""
+    """A spoken form of a name in the files: forward_left, l_upper_arm."""
     sides = {"l": "left", "r": "right"}
     first, *others = name.split("_")
     return " ".join([sides.get(first, first), *others])

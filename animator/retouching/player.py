@@ -1,18 +1,18 @@
-"""Plays a run on the retouching page, until it is stopped or there is no more of it."""
+"""Plays a run on the retouching page, until stopped or at its end."""
 
 import threading
 from collections.abc import Callable
 from typing import Final
 
 ROWS_HZ: Final = 15.0
-"""Frames a second that are played, whatever the video's rate: enough to see a joint that jumps."""
+"""Frame rate of the player, Hz, whatever the video's rate: enough to see a joint that jumps."""
 
 
 class Player:
     """Shows one row after the other.
 
     Args:
-        advance: Shows the next row; False where there is none.
+        advance: Shows the next row; returns False where there is none.
     """
 
     def __init__(self, advance: Callable[[], bool]) -> None:
@@ -23,11 +23,11 @@ class Player:
 
     @property
     def playing(self) -> bool:
-        """Whether it plays now."""
+        """Whether it is playing."""
         return not self._stops.is_set()
 
     def toggle(self) -> None:
-        """Play, or stop playing."""
+        """Start or stop playing."""
         with self._lock:
             if self.playing:
                 self.stop()
@@ -36,12 +36,12 @@ class Player:
             threading.Thread(target=self._play, args=(self._stops,), daemon=True).start()
 
     def stop(self) -> None:
-        """Stay where it is; the row that is being shown is the last."""
+        """Stop; the row being shown is the last."""
         self._stops.set()
 
     def _play(self, stops: threading.Event) -> None:
         try:
             while not stops.wait(1.0 / ROWS_HZ) and self._advance():
                 pass
-        finally:  # Also when a row cannot be shown.
+        finally:  # Even when a row cannot be shown.
             stops.set()

@@ -1,4 +1,4 @@
-"""The retouching page: a frame with its stick, the lifted body from the side, and what to say."""
+"""The retouching page: a frame with its stick body, the lifted body from the side, and inputs."""
 
 import threading
 from collections.abc import Callable
@@ -18,16 +18,16 @@ from common.notes.notes import Auto, Depth, Note, Notes, Orientation, held, note
 
 
 class RetouchPage:
-    """What a browser on this machine sees at `address`, until `close`.
+    """A page for a browser on this machine at `address`, until `close`.
 
     Args:
         take: The run.
         size: Width and height of the video.
-        picture_of: The video's picture of a row of the run.
-        notes: What was said before.
-        save: Keeps the notes; answers what to tell the user, and whether it went well.
+        picture_of: The video's picture for a row of the run.
+        notes: Earlier inputs.
+        save: Saves the notes; returns a message for the user, and whether it succeeded.
         fit: Fits the run's video again.
-        port: Of this machine, free.
+        port: A free port of this machine.
 
     Raises:
         PageError: When the port is 0, taken or not allowed.
@@ -48,7 +48,7 @@ class RetouchPage:
         self.fitted: Notes | None = None
         self._row = int(np.argmax(take.posed))
         self._joint = JOINT_NAMES.index("l_wrist")
-        self._before: list[tuple[Notes, int]] = []  # what was said, and the row, before each input
+        self._before: list[tuple[Notes, int]] = []  # the notes, and the row, before each input
         self._moved: tuple[int, int] | None = None
         self._player = Player(self._advance)
         self._lock = threading.RLock()
@@ -62,7 +62,7 @@ class RetouchPage:
 
     @property
     def address(self) -> str:
-        """Where a browser finds the page."""
+        """Address of the page."""
         return f"http://{HOST}:{self._server.get_port()}"
 
     def close(self) -> None:
@@ -72,11 +72,11 @@ class RetouchPage:
         close_server(self._server)
 
     def say(self, notes: Notes, moved: tuple[int, int] | None = None) -> None:
-        """Take the user's word: it is kept at once and shown.
+        """Process an input: it is kept and shown at once.
 
         Args:
-            notes: All that was said, this too.
-            moved: Frame and joint, where a key moved one: presses that follow are one input.
+            notes: All inputs, including this one.
+            moved: Frame and joint, where a key moved one: successive presses are one input.
         """
         with self._lock:
             self._player.stop()
@@ -87,7 +87,7 @@ class RetouchPage:
             self._show()
 
     def undo(self) -> None:
-        """Unsay the last input, and show its frame."""
+        """Undo the last input, and show its frame."""
         with self._lock:
             if not self._before:
                 self._controls.tell("nothing to undo", True)
@@ -99,16 +99,16 @@ class RetouchPage:
             self._show()
 
     def keep(self) -> None:
-        """Write what was said, and tell how that went."""
+        """Save all inputs, and report the outcome."""
         with self._lock:
             self._controls.tell(*self._save(self.notes))
 
     def fit_again(self) -> None:
-        """Fit the video anew with all that was said; what is said meanwhile waits for the next."""
+        """Fit the video again with all inputs; inputs made meanwhile wait for the next fit."""
         self._fitting.begin(self.notes)
 
     def go_to(self, row: int | None) -> None:
-        """Show another row of the run; None: nothing is left to look at there."""
+        """Show another row of the run; None: no open question is left there."""
         with self._lock:
             self._player.stop()
             if row is None:
@@ -118,26 +118,26 @@ class RetouchPage:
             self._show()
 
     def go_to_frame(self, frame: int) -> None:
-        """Show the first row that is not before a frame of the video."""
+        """Show the first row at or after a frame of the video."""
         self.go_to(min(int(np.searchsorted(self.take.frame, frame)), len(self.take.frame) - 1))
 
     def go(self, frames: int) -> None:
-        """Show a row so much later; at the ends of the run it stays there."""
+        """Show the row at an offset; at the ends of the run it stays there."""
         self.go_to(min(max(self._row + frames, 0), len(self.take.frame) - 1))
 
     def look(self, step: int) -> None:
-        """Show the next row that leaves something open, or that before."""
+        """Show the next or previous row with an open question."""
         self.go_to(next_doubtful(self.take, self._row, self.notes, step))
 
     def play(self) -> None:
-        """Show one row after the other, or stop it; at the end of the run from its begin."""
+        """Start or stop playing; at the end of the run from its beginning."""
         with self._lock:
             if not self._player.playing and self._row == len(self.take.frame) - 1:
                 self.go_to(0)
         self._player.toggle()
 
     def choose(self, step: int) -> None:
-        """Choose the joint so many further on."""
+        """Choose the joint at an offset in the list."""
         self.pick((self._joint + step) % len(JOINT_NAMES))
 
     def pick(self, joint: int) -> None:
@@ -149,7 +149,8 @@ class RetouchPage:
     def place(
         self, joint: int, at_px: tuple[float, float], moved: tuple[int, int] | None = None
     ) -> None:
-        """Put a joint at a place of the picture, in this frame alone unless it shall hold."""
+        """Put a joint at a place of the picture, in this frame alone unless the input shall
+        hold."""
         with self._lock:
             frame, name = self._frame, JOINT_NAMES[joint]
             if self._controls.hold.value:
@@ -177,7 +178,7 @@ class RetouchPage:
         self.flip(ends.index(self._joint))
 
     def flip(self, limb: int) -> None:
-        """Let a segment lean the other way than it is shown, from this frame on."""
+        """Let a segment lean the other way than shown, from this frame on."""
         with self._lock:
             _, joints_m = with_notes(self.take, self._row, held(self.notes, self._frame))
             near, far = LIMB_ENDS[limb]
@@ -185,17 +186,17 @@ class RetouchPage:
             self.say(noted(self.notes, Note(self._frame, depth={LIMBS[limb]: other})))
 
     def face(self, way: Orientation | Auto) -> None:
-        """Say which way the person faces, from this frame on."""
+        """Set the person's orientation, from this frame on."""
         with self._lock:
             self.say(noted(self.notes, Note(self._frame, way)))
 
     def lean(self, limb: str, way: Depth | Auto) -> None:
-        """Say which way a segment leans, from this frame on."""
+        """Set a segment's lean, from this frame on."""
         with self._lock:
             self.say(noted(self.notes, Note(self._frame, depth={limb: way})))
 
     def let_go(self) -> None:
-        """Give the joints that are placed here back to the program, from this frame on."""
+        """Give the joints placed here back to the program, from this frame on."""
         with self._lock:
             placed = held(self.notes, self._frame).joints_px
             self.say(noted(self.notes, Note(self._frame, joints_px=dict.fromkeys(placed, AUTO))))

@@ -1,4 +1,4 @@
-"""The easel of the retouching page: a picture with its stick, and the body from the side."""
+"""The scene of the retouching page: a picture with its stick body, and the body from the side."""
 
 import math
 from collections.abc import Callable
@@ -16,42 +16,43 @@ from animator.turns import arc
 from common.body.body import JOINT_NAMES, LIMBS, Vector
 
 TALL_M: Final = 2.0
-"""Height of the picture in the room: about that of the body beside it."""
+"""Height of the picture in the scene, metres: about that of the body beside it."""
 GAP_M: Final = 0.9
-"""From the picture to the middle of the body."""
+"""Distance from the picture to the middle of the body."""
 FOV_RAD: Final = math.radians(30.0)
 ASPECT: Final = 1.25
-"""Width over height of what a browser leaves beside the panel."""
+"""Width over height of the window's part beside the panel."""
 STANDS_BACK: Final = 0.25
-"""In a window that is higher than wide, a phone's, the panel lies over the lower half: so much of
-the height the middle of all is above the window's."""
+"""In a portrait window, a phone's, the panel covers the lower half: the scene's middle is raised
+by this share of the height."""
 RESIZED: Final = 0.02
-"""A window whose width over height changed by more has been turned or told anew."""
+"""Change of a window's width over height that means it was turned."""
 BALL_M: Final = 0.022
-"""Radius of a joint: large enough to be taken hold of."""
+"""Radius of a joint, metres: large enough to grab."""
 CHOSEN: Final = 1.7
-"""Size of the joint that keys move, in that of the others."""
+"""Size of the chosen joint, over that of the others."""
 FRONT_M: Final = 0.02
-"""How far the stick stands before the picture, so that nothing of it drowns there."""
+"""Distance of the stick body in front of the picture, so that nothing of it is hidden."""
 SKY_LIGHT, SUN_LIGHT = 1.0, 0.9
-"""Together they show a body's colours about as they are, seen from the front."""
+"""Intensities of two lights that together show a body's colours about as they are, from the
+front."""
 UP: Final = np.array([0.0, 1.0, 0.0])
 PLACED: Final[Colour] = (62, 142, 126)
-"""A joint that the user placed."""
+"""Colour of a joint that the user placed."""
 
 Picture = NDArray[np.uint8]
 """(H, W, 3), red, green, blue."""
 
 
 class RetouchScene:
-    """What stands in the room of the page.
+    """The objects in the page's scene.
 
     Args:
-        server: Of the page.
+        server: The page's server.
         size: Width and height of the video.
-        picture: The first one.
-        placed: Told which joint was dragged where, in the video's pixels.
-        clicked: Told which of LIMBS was clicked on.
+        picture: The first picture.
+        placed: Called with a dragged joint and its place, in the video's pixels.
+        clicked: Called with the index in LIMBS of a clicked segment.
     """
 
     def __init__(
@@ -90,13 +91,13 @@ class RetouchScene:
         )
 
     def show(self, picture: Picture, posed: bool) -> None:
-        """Bring the picture up to date, and take stick and body away where there is no pose."""
+        """Update the picture, and hide stick body and body where there is no pose."""
         self._image.image = picture
         for handle in (self._balls, self._lines, self._body):
             handle.visible = posed
 
     def show_stick(self, joints_px: Vector, placed: set[str], chosen: int) -> None:
-        """The stick over the picture, (15, 2) in the video's pixels; one joint is chosen."""
+        """The stick body over the picture, (15, 2) in the video's pixels; one joint is chosen."""
         x, y = self._m_per_px * joints_px.T
         places = np.stack([x, TALL_M - y, np.full(len(x), FRONT_M)], axis=1)
         self._lines.points = places[[[stroke.near, stroke.far] for stroke in STROKES]]
@@ -108,7 +109,7 @@ class RetouchScene:
         )
 
     def show_body(self, joints_m: Vector, unsure: set[str]) -> None:
-        """The body turned by a quarter, the camera at its left; segments in doubt are pale."""
+        """The body turned by a quarter, the camera at its left; doubtful segments are pale."""
         at = joints_m - joints_m[0] * (1.0, 0.0, 1.0)
         places = np.stack([self._wide_m + GAP_M - at[:, 2], at[:, 1], at[:, 0]], axis=1)
         ends = places[[[stroke.near, stroke.far] for stroke in STROKES]]
@@ -135,16 +136,19 @@ class RetouchScene:
         scene.add_light_directional("/sun", intensity=SUN_LIGHT, position=(1.0, 4.0, 5.0))
 
     def _camera(self, aspect: float, up: float) -> dict[str, Vector]:
-        """Where to look from so that all is seen, its middle by a share of the height higher."""
+        """A viewpoint that shows everything, with its middle raised by a share of the height."""
         across_m = self._wide_m + 2 * GAP_M
         tall_m = max(1.2 * TALL_M, 1.1 * across_m / aspect)
         middle = np.array([across_m / 2, TALL_M / 2 - up * tall_m, 0.0])
         away = np.array([0.0, 0.0, tall_m / (2 * math.tan(FOV_RAD / 2))])
-        return {"position": middle + away, "look_at": middle}  # looks along when it is moved
+        return {
+            "position": middle + away,
+            "look_at": middle,
+        }  # the direction is kept when it is moved
 
     def _stand_back(self, client: viser.ClientHandle) -> None:
-        """Show all of it in a phone's window too, above the panel; again when that is turned, and
-        when a browser under load tells its window's size late or by and by."""
+        """Show the whole scene in a phone's window too, above the panel; again when the phone is
+        turned, and when a busy browser reports its window's size late."""
         stands = 1.0
 
         def look(_: object = None) -> None:
@@ -164,7 +168,7 @@ class RetouchScene:
             self._clicked(event.instance_index)
 
     async def _dragged(self, event: Any) -> None:
-        """Follow the pointer over the picture; the joint is placed where it is let go."""
+        """Follow the pointer over the picture; the joint is placed where the button is released."""
         joint = event.instance_index
         met = _on_picture(np.array(event.client.camera.position), np.array(event.end_position))
         if joint is None or met is None:
@@ -179,7 +183,7 @@ class RetouchScene:
 
 
 def _on_picture(eye: Vector, pointer: Vector) -> Vector | None:
-    """Where the ray from the spectator through the pointer meets the stick's plane, if it does."""
+    """Intersection of the pointer's ray with the stick body's plane, if any."""
     ray = pointer - eye
     if abs(ray[2]) < 1e-9:
         return None
@@ -188,7 +192,7 @@ def _on_picture(eye: Vector, pointer: Vector) -> Vector | None:
 
 
 def _line_colours() -> NDArray[np.uint8]:
-    """Colours of both ends of every stroke, (n, 2, 3)."""
+    """Colours of both ends of every line, (n, 2, 3)."""
     return np.array([[stroke.colour] * 2 for stroke in STROKES], np.uint8)
 
 

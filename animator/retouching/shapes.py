@@ -1,4 +1,4 @@
-"""Copies of a solid in a page's room: one handle for all of them."""
+"""Copies of a solid in a page's scene, with one handle for all."""
 
 import numpy as np
 import viser
@@ -8,7 +8,7 @@ from animator.solids import Mesh
 
 
 def add_shapes(scene: viser.SceneApi, name: str, mesh: Mesh, count: int) -> viser.BatchedMeshHandle:
-    """So many copies of a solid; none is seen until it is placed and made visible."""
+    """Copies of a solid; each is invisible until it is placed and shown."""
     return scene.add_batched_meshes_simple(
         name,
         mesh.vertices,
@@ -23,7 +23,7 @@ def add_shapes(scene: viser.SceneApi, name: str, mesh: Mesh, count: int) -> vise
 
 
 def place_shapes(handle: viser.BatchedMeshHandle, shapes: Shapes) -> None:
-    """Give every copy its place, turn, size and colour."""
+    """Set every copy's place, turn, size and colour."""
     handle.batched_positions = shapes.positions
     handle.batched_wxyzs = shapes.wxyzs
     handle.batched_scales = shapes.scales

@@ -1,4 +1,4 @@
-"""The retouching page's door: a viser server that this machine's own browser may enter alone."""
+"""Access to the retouching page: a viser server for this machine's own browser alone."""
 
 import logging
 from collections.abc import Iterator
@@ -11,7 +11,7 @@ import viser
 from animator.page.door import HOST, PageError, is_own, refuse_port, unusable
 
 POLICY_VIOLATION: Final = 1008
-"""What a WebSocket says when it closes on a client that may not enter (RFC 6455, 7.4.1)."""
+"""Close code of a WebSocket for a client that may not enter (RFC 6455, 7.4.1)."""
 
 
 def open_server(port: int) -> viser.ViserServer:
@@ -21,7 +21,7 @@ def open_server(port: int) -> viser.ViserServer:
         PageError: When the port is 0, taken or not allowed.
     """
     refuse_port(port)
-    logging.getLogger("websockets.server").setLevel(logging.WARNING)  # it tells of every browser
+    logging.getLogger("websockets.server").setLevel(logging.WARNING)  # it logs every browser
     with _quiet():
         server = viser.ViserServer(host=HOST, port=port, label="tritrack", verbose=False)
     if server.get_port() != port:
@@ -38,7 +38,7 @@ def close_server(server: viser.ViserServer) -> None:
 
 
 def _guard(server: viser.ViserServer) -> None:
-    """Close on strangers before anything is sent; viser has no setting for it."""
+    """Close foreign connections before anything is sent; viser has no setting for it."""
     sockets = server._websock_server
 
     async def refuse_strangers(client: viser.ClientHandle) -> None:
@@ -52,7 +52,7 @@ def _guard(server: viser.ViserServer) -> None:
 
 @contextmanager
 def _quiet() -> Iterator[None]:
-    """Keep viser's own announcements off the terminal: the commands say what matters."""
+    """Keep viser's own announcements off the terminal: the commands print what matters."""
     logging.getLogger("websockets").setLevel(logging.WARNING)
     console = rich.get_console()
     was, console.quiet = console.quiet, True

@@ -1,1 +1,1 @@
-"""A skeleton of fixed bones through a run, and feet that stand still in it."""
+"""A skeleton of fixed bones for a run, with feet that do not slide."""

@@ -1,4 +1,4 @@
-"""The turns that lead a skeleton through a run's joints."""
+"""Turns of a skeleton's bones that follow a run's joints."""
 
 from typing import Final, NamedTuple
 
@@ -25,19 +25,19 @@ Floats = NDArray[np.float64]
 
 
 class _Generation(NamedTuple):
-    """Bones that are as far from the hips, which are aimed at once."""
+    """Bones at the same depth in the hierarchy, which are turned together."""
 
     bones: list[int]
-    """Places in BONES."""
+    """Indices in BONES."""
     parents: list[int]
     ends: list[int]
-    """Of the landmarks that they are aimed at, places in ALL_JOINT_NAMES."""
+    """Indices in ALL_JOINT_NAMES of the landmarks that they are aimed at."""
     hinges: list[int]
-    """Places in HINGES of the upper limbs among them."""
+    """Indices in HINGES of the upper limbs among them."""
     uppers: list[int]
-    """Their places in BONES."""
+    """Their indices in BONES."""
     lower_ends: list[int]
-    """The landmarks that the lower limbs are aimed at."""
+    """Indices of the landmarks that the lower limbs are aimed at."""
 
 
 def _generation(bones: list[int]) -> _Generation:
@@ -64,20 +64,20 @@ _GENERATIONS: Final = {
     )
     for count in OF_JOINTS.values()
 }
-"""Of a skeleton of so many bones, those behind hips and spine."""
+"""The levels of a skeleton with that many bones, after hips and spine."""
 
 
 class Turned(NamedTuple):
-    """A skeleton's bones in n frames."""
+    """Turns of a skeleton's bones in n frames."""
 
     axes: Floats
     """(bones, n, 3, 3) turns as matrices, each in its parent's axes."""
     twists: Vector
-    """(4, n) of the upper limbs, radians, in the order of HINGES."""
+    """(4, n) twists of the upper limbs, radians, in the order of HINGES."""
 
 
 def motion_of(skeleton: Skeleton, joints_m: Joints, time_s: Vector) -> Motion:
-    """The turns that lead a skeleton through joints, without NaN, at (n,) increasing times."""
+    """The turns of a skeleton that follow joints without NaN at (n,) increasing times."""
     axes = turned_axes(skeleton, joints_m, time_s).axes
     turns = tuple(Rotation.from_matrix(own, assume_valid=True) for own in axes)
     return Motion(joints_m[:, AT["pelvis"]], turns)
@@ -86,16 +86,16 @@ def motion_of(skeleton: Skeleton, joints_m: Joints, time_s: Vector) -> Motion:
 def turned_axes(
     skeleton: Skeleton, joints_m: Joints, time_s: Vector, before: Before | None = None
 ) -> Turned:
-    """How a skeleton's bones are turned where its joints are these.
+    """The turns of a skeleton's bones for given joints.
 
-    Every bone is aimed at its landmark from where the bones before it have come to, so that a
-    length that differs shifts one landmark and not the rest of the limb. Upper arms and thighs are
-    twisted so that the limb that hangs on them bends about its hinge's axis (`limb_twists`).
+    Every bone is aimed at its landmark from the end of the bone before, so that a deviating length
+    shifts one landmark and not the rest of the limb. Upper arms and thighs are twisted so that the
+    lower limb bends about its hinge's axis (`limb_twists`).
 
     Args:
-        skeleton: A body.
+        skeleton: The body.
         joints_m: Without NaN.
-        time_s: (n,) when they were taken.
+        time_s: (n,) capture times.
         before: (4,) twists of the frame before the first; None: there is none.
     """
     local = np.empty((len(skeleton.bones), len(joints_m), 3, 3))

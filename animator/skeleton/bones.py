@@ -1,4 +1,4 @@
-"""The skeleton of animation files: bones of fixed length, and where they have a run's joints."""
+"""The skeleton of animation files: bones of fixed length, and their places in a run."""
 
 from typing import Final, NamedTuple
 
@@ -17,14 +17,14 @@ pose."""
 
 
 class Bone(NamedTuple):
-    """One joint of the skeleton and what hangs between it and its parent."""
+    """One joint of the skeleton, and the segment between it and its parent."""
 
     name: str
-    """As most animation programs call it."""
+    """Its usual name in animation programs."""
     parent: int
-    """Place in BONES; -1: the root."""
+    """Index in BONES; -1: the root."""
     starts: str
-    """The landmark where it turns."""
+    """The landmark at its joint."""
     ends: str
     """The landmark that it is aimed at."""
 
@@ -48,16 +48,17 @@ BONES: Final = (
     Bone("LeftFoot", 10, "l_ankle", "l_toe"),
     Bone("RightFoot", 12, "r_ankle", "r_toe"),
 )
-"""Parents before their children. A pelvis and a trunk turn apart; so do the shoulders, which rise
-with the arms. A body without extremities has no hands and feet, the last four."""
+"""The bones, parents before their children. Pelvis and trunk turn independently; so do the
+shoulders, which rise with the arms. A body without extremities lacks hands and feet, the last
+four."""
 OF_JOINTS: Final = {
     len(JOINT_NAMES): sum(bone.ends in JOINT_NAMES for bone in BONES),
     len(ALL_JOINT_NAMES): len(BONES),
 }
-"""How many of BONES lie between so many joints."""
+"""Number of BONES for that many joints."""
 
 AT: Final = {name: i for i, name in enumerate(ALL_JOINT_NAMES)}
-"""Where each landmark stands."""
+"""Index of each landmark."""
 _UP, _LEFT = np.array([0.0, 1.0, 0.0]), np.array([1.0, 0.0, 0.0])
 _FOOT: Final = np.array([0.0, -DOWN_SHARE, AHEAD_SHARE]) / np.hypot(DOWN_SHARE, AHEAD_SHARE)
 _REST: Final = {"Spine": _UP, "Head": _UP, "Hips": _LEFT} | {
@@ -65,16 +66,16 @@ _REST: Final = {"Spine": _UP, "Head": _UP, "Hips": _LEFT} | {
     for side, sign in (("Left", 1.0), ("Right", -1.0))
     for bone in ("Arm", "ForeArm", "Hand", "UpLeg", "Leg", "Foot")
 }
-"""Where a bone points at rest: the opening posture, farthest from every pose in which a limb
-points the other way and the shortest turn there would jump. Shoulders rest where they mostly
-are."""
+"""Direction of a bone at rest: the opening posture, farthest from every pose in which a limb
+points the opposite way, where the shortest turn would jump. Shoulders rest in their usual
+direction."""
 
 
 class Skeleton(msgspec.Struct, frozen=True):
     """A body of rigid bones, facing +z, arms stretched out."""
 
     tips_m: Vector
-    """(13, 3) or (17, 3) from each bone's joint to what it is aimed at, at rest, BONES order."""
+    """(13, 3) or (17, 3) from each bone's joint to its target, at rest, BONES order."""
 
     @property
     def bones(self) -> tuple[Bone, ...]:
@@ -83,18 +84,18 @@ class Skeleton(msgspec.Struct, frozen=True):
 
 
 class Motion(NamedTuple):
-    """A skeleton over time."""
+    """A skeleton's motion."""
 
     root_m: Vector
-    """(n, 3) where the hips are."""
+    """(n, 3) places of the hips."""
     turns: tuple[Rotation, ...]
-    """(n,) of each bone, in its parent's axes."""
+    """(n,) turns of each bone, in its parent's axes."""
 
 
 def skeleton_of(joints_m: Joints) -> Skeleton:
     """The bones of a run: the median length of each over the frames that have a pose.
 
-    Where the body is rigid, as the paper's is, that is the length its BDPs give.
+    For a rigid body, as the paper's, that is the length by its BDPs.
 
     Args:
         joints_m: At least one row without NaN.
@@ -114,8 +115,8 @@ def skeleton_of(joints_m: Joints) -> Skeleton:
 
 
 def joints_of(skeleton: Skeleton, motion: Motion) -> Joints:
-    """Where a moving skeleton has the 15 landmarks; with hands and feet the 22, of which nose and
-    heels, that no bone leads to, are NaN."""
+    """The 15 landmarks of a moving skeleton; with hands and feet the 22, of which nose and
+    heels, which no bone ends at, are NaN."""
     names = JOINT_NAMES if len(skeleton.bones) < len(BONES) else ALL_JOINT_NAMES
     found = np.full((len(motion.root_m), len(names), 3), np.nan)
     world: list[Rotation] = []
@@ -132,7 +133,7 @@ def joints_of(skeleton: Skeleton, motion: Motion) -> Joints:
 
 
 def offset_m(skeleton: Skeleton, bone: int) -> Vector:
-    """From a bone's parent's joint to its own, at rest, (3,)."""
+    """From the joint of a bone's parent to its own, at rest, (3,)."""
     own, parent = BONES[bone], BONES[BONES[bone].parent]
     if own.parent < 0 or own.starts == parent.starts:
         return np.zeros(3)
@@ -142,7 +143,7 @@ def offset_m(skeleton: Skeleton, bone: int) -> Vector:
 
 
 def rest_origins_m(skeleton: Skeleton) -> Vector:
-    """Where each bone's joint is at rest, (bones, 3), the hips at the origin."""
+    """Places of the bones' joints at rest, (bones, 3), the hips at the origin."""
     origins = np.zeros((len(skeleton.bones), 3))
     for i, bone in enumerate(skeleton.bones):
         if bone.parent >= 0:

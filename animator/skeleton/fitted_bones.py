@@ -1,4 +1,4 @@
-"""A body of fixed bones as near as it can be to joints that were tracked one by one."""
+"""A body of fixed bones fitted to joints that were tracked separately."""
 
 from typing import Final
 
@@ -12,27 +12,29 @@ from common.body.extremities import ALL_JOINT_NAMES
 Floats = NDArray[np.float64]
 
 ROUNDS: Final = 5
-"""Of the fit: joints that are 1 cm off have bones within a hundredth of a millimetre of theirs."""
+"""Rounds of the fit: for joints that are 1 cm off, bones are within a hundredth of a millimetre
+of theirs."""
 AT_ONCE: Final = 4096
-"""Rows that are fitted together: a long video has more than memory has room for."""
+"""Number of rows that are fitted together: a long video would exceed the memory."""
 NO_BONE: Final = 1e-9
-"""Is added where both ends of a bone are in one place, which has no direction."""
+"""Added where both ends of a bone coincide and it has no direction."""
 _AT: Final = {name: i for i, name in enumerate(ALL_JOINT_NAMES)}
 
 
 def fitted(skeleton: Skeleton, joints_m: Joints, weights: Floats) -> Joints:
-    """The joints of the skeleton that are nearest to these, by weighted least squares.
+    """The skeleton's joints nearest to these, by weighted least squares.
 
-    Of a bone that is too short for where its ends were tracked both ends give, and the bones
-    beyond; aimed one after the other, all of it would come to lie at the farther end.
+    Where a bone is too short for its tracked ends, both ends move, and the bones beyond; if bones
+    were aimed one after the other, the whole difference would be at the farther end.
 
     Args:
-        skeleton: Of the run.
+        skeleton: The run's skeleton.
         joints_m: (n, 15 or 22, 3) without NaN; the pelvis between the hips.
-        weights: Likewise, how reluctantly each is moved along each axis; the pelvis' do not count.
+        weights: Likewise, the resistance of each to motion along each axis; the pelvis' do not
+            count.
 
     Returns:
-        (n, 15 or 22, 3); what no bone leads to, nose and heels, is left where it was.
+        (n, 15 or 22, 3); nose and heels, at which no bone ends, are not changed.
 
     Source: Mueller et al. 2007, Position based dynamics, with all constraints solved at once.
     """
@@ -46,7 +48,7 @@ def fitted(skeleton: Skeleton, joints_m: Joints, weights: Floats) -> Joints:
 
 
 def _places(ends: Floats, lengths_m: Vector, tracked: Floats, gives: Floats) -> Floats:
-    """Where joints (n, joints, 3) come to lie that give so much along each axis."""
+    """Places of joints (n, joints, 3) that yield by the given amounts along each axis."""
     shares = [(ends * gives[:, None, :, axis]) @ ends.T for axis in range(3)]
     wanted, places = ends @ tracked, tracked
     for _ in range(ROUNDS):
@@ -64,8 +66,8 @@ def _places(ends: Floats, lengths_m: Vector, tracked: Floats, gives: Floats) -> 
 
 
 def _bones(skeleton: Skeleton, names: list[str]) -> tuple[Floats, Vector]:
-    """Which of these joints each bone leads to, (bones, joints), 1 where it ends and -1 where it
-    starts, the pelvis half of either hip, and how long it is; the first from hip to hip."""
+    """Incidence of joints and bones, (bones, joints), 1 at a bone's end and -1 at its start, the
+    pelvis half of either hip; and the bones' lengths, the first from hip to hip."""
     ends = np.array([_at(names, bone.ends) - _at(names, bone.starts) for bone in skeleton.bones])
     lengths_m = np.linalg.norm(skeleton.tips_m, axis=1)
     ends[0], lengths_m[0] = _at(names, "l_hip") - _at(names, "r_hip"), 2 * lengths_m[0]

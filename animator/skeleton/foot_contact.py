@@ -1,4 +1,5 @@
-"""When a foot stands: it is low and slow, and stays until it is neither for a while."""
+"""Contacts of a foot: it is low and slow, and remains in contact until it is neither for a
+while."""
 
 import math
 from heapq import heappop, heappush, heappushpop
@@ -14,18 +15,18 @@ Side = Literal["l", "r"]
 SIDES: Final[tuple[Side, Side]] = ("l", "r")
 
 COMES_M_S, GOES_M_S = 0.30, 0.60
-"""Speed of the ankle below which a foot comes to stand, and beyond which it goes."""
+"""Speeds of the ankle below which a contact begins, and above which it ends."""
 LOW_M, HIGH_M = 0.04, 0.07
-"""Height of the ankle above where it stands, likewise."""
+"""Heights of the ankle above its standing height, likewise."""
 WANDERS_M: Final = 0.05
-"""A foot that comes farther from where it stood so far stands anew."""
+"""Distance from the contact's place beyond which a new contact begins."""
 STANDS_S: Final = 0.15
-"""Shorter it only touches the floor."""
+"""Shortest contact; a shorter one is only a touch."""
 STEPS_S: Final = 0.3
-"""What stands again so soon, within WANDERS_M of where it did and not lifted, has not stepped: a
-track that starts is off for a few frames."""
+"""Longest break of a contact: a foot that is back so soon, within WANDERS_M and without having
+been lifted, has not stepped; a starting track is off for a few frames."""
 LOWEST: Final = 20
-"""Where ankles stand is this percentile of the lower one's height, in a run."""
+"""Percentile of the lower ankle's height in a run that gives the standing height."""
 
 
 class Stance(NamedTuple):
@@ -68,7 +69,7 @@ def stances(joints_m: Joints, time_s: Vector) -> list[Stance]:
 def _bridged(
     held: list[tuple[int, int]], ankle_m: Vector, is_low: NDArray[np.bool_], time_s: Vector
 ) -> list[tuple[int, int]]:
-    """Contacts between which a foot slips off for a moment are one, where the first one was."""
+    """Contacts between which a foot slips for a moment are joined, at the first one's place."""
     whole: list[tuple[int, int]] = []
     stood_m = np.full(2, np.inf)
     for first, end in held:
@@ -87,7 +88,8 @@ def _bridged(
 
 
 def _speeds(places_m: Vector, time_s: Vector) -> Vector:
-    """Of a point (n, 3), from the row before to the row after; at ends and gaps from one side."""
+    """Velocity of a point (n, 3), from the row before to the row after; one-sided at ends and
+    gaps."""
     steps = np.linalg.norm(np.diff(places_m, axis=0), axis=1) / np.diff(time_s)
     both = np.full((2, len(places_m)), np.nan)
     both[0, 1:], both[1, :-1] = steps, steps
@@ -117,7 +119,7 @@ def _held(
 
 
 class _Median:
-    """Of numbers that come one by one: who stands for an hour costs no more a row."""
+    """Running median of numbers: an hour of standing costs no more per row."""
 
     def __init__(self) -> None:
         self._below: list[float] = []

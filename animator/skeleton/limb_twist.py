@@ -1,4 +1,4 @@
-"""How upper arms and thighs are twisted: elbow and knee bend about one axis of theirs alone."""
+"""Twists of upper arms and thighs: elbow and knee bend about a single axis."""
 
 import math
 from typing import Final, NamedTuple
@@ -10,26 +10,26 @@ from scipy.linalg import solveh_banded
 from common.body.body import Vector
 
 STRAIGHT_DEG: Final = 20.0
-"""A limb that is bent less does not show by itself how it is twisted: joints that are 1 cm off
-turn its plane by 5 degrees and more."""
+"""Bend of a limb, degrees, below which it does not determine its own twist: joints that are 1 cm
+off turn its plane by 5 degrees and more."""
 SHOWN: Final = math.sin(math.radians(STRAIGHT_DEG))
 CALM_S: Final = 0.15
-"""About so long before and after counts what a limb shows that is half as bent."""
+"""Time before and after over which a limb that is half as bent counts."""
 REST: Final = 1e-3
-"""What speaks for the twist at rest, beside 1 for that of a limb that is bent by 14 degrees."""
+"""Weight of the twist at rest, relative to 1 for that of a limb that is bent by 14 degrees."""
 EXACT: Final = 1e-9
-"""What is left of doubt where a limb is bent by STRAIGHT_DEG or more."""
+"""Remaining doubt where a limb is bent by STRAIGHT_DEG or more."""
 SHORTEST_S: Final = 1e-3
-"""From one frame to the next, by the least that clocks of cameras tell."""
+"""Smallest time between two frames, by the resolution of cameras' clocks."""
 
 
 class Hinge(NamedTuple):
     """The joint between an upper and a lower limb, in the axes of the upper one at rest."""
 
     along: Vector
-    """(3,) where both limbs point."""
+    """(3,) direction of both limbs."""
     ahead: Vector
-    """(3,) where the lower one goes as it bends; the hinge's axis is `along` x `ahead`."""
+    """(3,) direction in which the lower one bends; the hinge's axis is `along` x `ahead`."""
 
     @property
     def axes(self) -> NDArray[np.float64]:
@@ -49,7 +49,7 @@ AXES: Final = np.stack([hinge.axes for hinge in HINGES.values()])
 
 
 class Before(NamedTuple):
-    """How limbs were twisted last."""
+    """The last twists."""
 
     twists: Vector
     """(limbs,) radians."""
@@ -59,16 +59,16 @@ class Before(NamedTuple):
 def limb_twists(
     bends: NDArray[np.complex128], time_s: Vector, before: Before | None = None
 ) -> Vector:
-    """About its own axis, how far each upper limb is turned, radians, without jumps.
+    """Twist of each upper limb about its own axis, radians, without jumps.
 
-    A limb that is bent shows it: by STRAIGHT_DEG and more its hinge's axis is met exactly. Of one
-    that is straighter the twist is that which changes least over time, by least squares, in which
-    every frame weighs what it shows; its lower part is then beside the hinge's plane, by less than
-    it is bent. Twists are added up as directions, so that the shorter way is gone.
+    A bent limb determines it: from STRAIGHT_DEG on its hinge's axis is met exactly. The twist of a
+    straighter one changes least over time, by least squares with each frame's evidence as its
+    weight; its lower part then deviates from the hinge's plane, by less than it is bent. Twists are
+    averaged as directions, which takes the shorter way.
 
     Args:
-        bends: (limbs, n) of each frame, `bends_of`.
-        time_s: (n,) when they were taken, increasing.
+        bends: (limbs, n) of each frame, from `bends_of`.
+        time_s: (n,) capture times, increasing.
         before: The frame before the first; None: there is none.
 
     Returns:
@@ -99,11 +99,12 @@ def _least_changing(
 
 
 def bends_of(axes: NDArray[np.float64], lower: NDArray[np.float64]) -> NDArray[np.complex128]:
-    """How far limbs are bent and which way: sine of the bend, and as its phase the twist.
+    """Bend of limbs as complex numbers: the sine of the bend, with the twist as its phase.
 
     Args:
         axes: (limbs, 3, 3) of the hinges, of AXES.
-        lower: (limbs, n, 3) where the lower limbs point, in the axes of upper ones without a twist.
+        lower: (limbs, n, 3) directions of the lower limbs, in the axes of upper ones without a
+            twist.
     """
     aside = lower @ axes / np.maximum(np.linalg.norm(lower, axis=-1, keepdims=True), 1e-9)
     bends: NDArray[np.complex128] = aside[..., 1] + 1j * aside[..., 2]
@@ -111,7 +112,7 @@ def bends_of(axes: NDArray[np.float64], lower: NDArray[np.float64]) -> NDArray[n
 
 
 def twist_axes(axes: NDArray[np.float64], twists: Vector) -> NDArray[np.float64]:
-    """Turns about the limbs themselves as matrices, (limbs, n, 3, 3), of (limbs, n) radians."""
+    """Turns about the limbs' own axes as matrices, (limbs, n, 3, 3), for (limbs, n) radians."""
     turns = np.zeros((*twists.shape, 3, 3))
     turns[..., 0, 0] = 1.0
     turns[..., 1, 1] = turns[..., 2, 2] = np.cos(twists)

@@ -1,4 +1,4 @@
-"""Feet that do not slide: where a foot stands it is held, and the body follows by its bones."""
+"""Feet that do not slide: a standing foot is held in place, and the body follows by its bones."""
 
 from typing import Final, NamedTuple
 
@@ -14,28 +14,28 @@ from common.body.extremities import ALL_JOINT_NAMES
 Floats = NDArray[np.float64]
 
 BLEND_S: Final = 0.2
-"""Seconds before and after a stance in which a foot goes over to where it was measured."""
+"""Seconds before and after a contact in which a foot moves to its measured place."""
 STANDS_FAST: Final = np.array([300.0, 3.0, 300.0])
-"""How much more reluctantly than other joints a standing foot's ankle moves along each axis: over
-the floor not at all, up and down a little, since its tracked height varies by 8 mm, and a straight
-leg that is a centimetre too long bends by 18 degrees. Chosen on two performers
+"""Resistance of a standing foot's ankle along each axis, relative to other joints: over the
+floor infinite, up and down moderate, since its tracked height varies by 8 mm, and a straight leg
+that is a centimetre too long bends by 18 degrees. Chosen on two performers
 (docs/measurements.md)."""
 HIP: Final = 3.0
-"""How much more reluctantly a hip moves: both carry the pelvis and all that hangs on it."""
+"""Resistance of a hip, relative to other joints: both carry the pelvis and all above."""
 
 _AT: Final = {name: i for i, name in enumerate(ALL_JOINT_NAMES)}
 
 
 class Planted(NamedTuple):
-    """A run whose feet stand still."""
+    """A run whose feet do not slide."""
 
     joints_m: Joints
     held: Floats
-    """(n, 2) of the left and the right foot: 1 while it stands, less while it comes and goes."""
+    """(n, 2) of the left and the right foot: 1 while it stands, less during the transitions."""
 
 
 def planted(joints_m: Joints, time_s: Vector) -> Planted:
-    """The run with each standing foot where it mostly was.
+    """The run with each standing foot at its median place.
 
     Args:
         joints_m: (n, 15 or 22, 3), NaN where there is no pose.
@@ -56,10 +56,10 @@ def planted(joints_m: Joints, time_s: Vector) -> Planted:
 
 
 def on_its_feet(skeleton: Skeleton, run: Planted) -> Joints:
-    """The joints to which a skeleton of fixed bones is aimed so that its feet stand still too.
+    """The joints to which a skeleton of fixed bones is aimed so that its feet do not slide either.
 
     Args:
-        skeleton: Of the run.
+        skeleton: The run's skeleton.
         run: Rows with a pose.
     """
     weights = np.ones_like(run.joints_m)
@@ -82,7 +82,7 @@ def _weights(own: list[Stance], time_s: Vector) -> Vector:
 
 
 def _shifts(places_m: Floats, own: list[Stance], weights: Vector) -> Floats:
-    """By how much a point of a foot is moved, (n, 3)."""
+    """Displacement of a point of a foot, (n, 3)."""
     stands, shifts = np.zeros(len(places_m), np.bool_), np.zeros_like(places_m)
     for stance in own:
         part = slice(stance.first, stance.end)
@@ -95,7 +95,7 @@ def _shifts(places_m: Floats, own: list[Stance], weights: Vector) -> Floats:
 
 
 def nearest(rows: NDArray[np.int64], known: NDArray[np.int64]) -> NDArray[np.int64]:
-    """For each of `rows` (n,) the nearest of `known` (k,), the earlier of two as near.
+    """For each of `rows` (n,) the nearest of `known` (k,), the earlier of two at one distance.
 
     Args:
         rows: In any order.
