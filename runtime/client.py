@@ -1,4 +1,4 @@
-"""tritrack in one's own program: bodies of images, of a clip, or of a live run as they come."""
+"""tritrack in a program of one's own: bodies from images, from a clip, or from a live run."""
 
 import asyncio
 import time
@@ -36,12 +36,12 @@ ENDPOINT: Final = BusSettings().endpoint
 ROOM: Final = Settings().room
 WAIT_S: Final = 60.0
 LOOK_S: Final = 0.2
-"""How often is asked whether the run is over while nothing is said."""
+"""Interval, seconds, at which a silent run is checked for its end."""
 HUB: Final = "integrator"
 
 
 def track(source: str | Path, views: tuple[ViewerNumber, ...] | None = None) -> list[Body]:
-    """Track a recorded clip: the bodies that `tritrack track` writes, one a frame.
+    """Track a recorded clip: the bodies that `tritrack track` writes, one per frame.
 
     Examples:
         >>> from tritrack import track
@@ -55,7 +55,7 @@ def track(source: str | Path, views: tuple[ViewerNumber, ...] | None = None) -> 
         source: A clip folder (cam1.*, cam2.* ...), or a settings file (TOML).
         views: Numbers of the cameras to use; None: all.
 
-    Numpy's products take one thread meanwhile: two would wait for each other at every frame.
+    NumPy's products use one thread meanwhile: two would wait for each other at every frame.
 
     Raises:
         SettingsError, ClipError, DecoderDied: When the clip cannot be used; the text says why.
@@ -80,10 +80,10 @@ def load_run(folder: str | Path) -> "PastRun":
         'calibrated'
 
     Args:
-        folder: That `tritrack track`, `single` or `live` wrote, whole or cut short.
+        folder: Written by `tritrack track`, `single` or `live`, complete or cut short.
 
     Raises:
-        PastRunError: When it is none, was damaged, or a newer version wrote it.
+        PastRunError: When it is no run folder, is damaged, or is of a newer version.
     """
     from runtime.store.past_run import open_run
 
@@ -111,7 +111,7 @@ def subscribe(
     wait_s: float = WAIT_S,
     keys: str = "",
 ) -> "Subscription":  # type: ignore[type-arg]
-    """What a live run says, for `for` and `async for`, until the run is over.
+    """Messages of a live run, for `for` and `async for`, until the run is over.
 
     Examples:
         >>> from tritrack import subscribe
@@ -124,7 +124,7 @@ def subscribe(
     Args:
         endpoint: Where the integrator listens, `[bus] endpoint` of the run's settings.
         room: `room` of the run's settings.
-        kind: Which message: Body, Posture or View.
+        kind: Kind of message: Body, Posture or View.
         wait_s: How long to wait for the run to begin.
         keys: Folder with ca.pem, client.pem and client.key, where the run has keys; the endpoint is
             tls/HOST:PORT then.
@@ -137,10 +137,10 @@ def subscribe(
 
 
 class Subscription(Generic[Said]):
-    """A live run's messages of one kind; each loop over it listens anew from then on.
+    """A live run's messages of one kind; each loop over it opens its own subscription.
 
-    A loop that is slower than the run loses the oldest of 256 messages that wait, never the newest.
-    It ends when the integrator does. It raises BusError when nobody answers in time.
+    A loop that is slower than the run loses the oldest of 256 waiting messages, never the newest.
+    It ends with the integrator. It raises BusError when there is no run in time.
     """
 
     def __init__(self, kind: type[Said], bus: BusSettings, room: str, wait_s: float) -> None:
@@ -148,7 +148,7 @@ class Subscription(Generic[Said]):
         self._kind, self._bus, self._room, self._wait_s = kind, bus, room, wait_s
 
     def __iter__(self) -> Iterator[Said]:
-        """Listen from now on."""
+        """Subscribe from now on."""
         with ExitStack() as doors:
             ears = self._listen(doors)
             while (message := ears.take()) is not None or not ears.over:
@@ -156,7 +156,7 @@ class Subscription(Generic[Said]):
                     yield message
 
     async def __aiter__(self) -> AsyncIterator[Said]:
-        """Listen from now on; the event loop is not held up."""
+        """Subscribe from now on; the event loop is not blocked."""
         with ExitStack() as doors:
             ears = await asyncio.to_thread(self._listen, doors)
             while (message := await asyncio.to_thread(ears.take)) is not None or not ears.over:
@@ -184,7 +184,7 @@ class _Ears(Generic[Said]):
 
     @property
     def over(self) -> bool:
-        """Whether the integrator went, or never came."""
+        """Whether the integrator left, or never came."""
         for alive in self._alive.drain():
             if alive.name == HUB:
                 self._there = alive.alive

@@ -1,4 +1,4 @@
-"""What goes wrong, told apart: what a user can mend, and faults of the program."""
+"""Errors in two classes: those that a user can cure, and faults of the program."""
 
 import errno
 import tempfile
@@ -11,28 +11,29 @@ from common.packages import PACKAGES
 from runtime.terminal import counted
 
 FULL: Final = (errno.ENOSPC, errno.EDQUOT)
-"""What a full disk says, wherever it is met."""
+"""The message for a full disk, wherever it occurs."""
 
 FAULTY: Final = 1
 """Exit code of a fault."""
 MENDABLE: Final = 2
-"""Exit code of what a user can mend."""
+"""Exit code of an error that a user can cure."""
 
 UNFOLLOWED: Final = 3
-"""Exit code of a run whose results are written, and hardly to be believed."""
+"""Exit code of a run whose results are written but hardly believable."""
 HALF: Final = 0.5
 
 
 class Unfollowed(RuntimeError):
-    """Clips that were not read to their end, or are mostly not believed; results are written."""
+    """Clips that were not read to their end, or whose bodies are mostly not believed; results
+    are written."""
 
 
 class Fault(RuntimeError):
-    """A fault that another process met; the text says where its traceback is."""
+    """A fault in another process; the text says where its traceback is."""
 
 
 def told(error: Exception) -> str:
-    """What is wrong in one line; it names the file that keeps the traceback of a fault."""
+    """The error in one line; for a fault it names the file with the traceback."""
     if _is_for_the_user(error) or isinstance(error, Fault):
         return str(error)
     with tempfile.NamedTemporaryFile(
@@ -44,7 +45,7 @@ def told(error: Exception) -> str:
 
 
 def code_of(error: Exception) -> int:
-    """The exit code of a process that ends by it."""
+    """The exit code of a process that ends with this error."""
     if isinstance(error, Unfollowed):
         return UNFOLLOWED
     return FAULTY if isinstance(error, Fault) or not _is_for_the_user(error) else MENDABLE
@@ -55,7 +56,7 @@ def refuse_unfollowed(clips: Mapping[str, Facts]) -> None:
 
     Raises:
         Unfollowed: When one could not be read to its end, is believed in less than half of its
-            frames with a person, or shows nobody.
+            frames with a person, or shows no person.
     """
     _refuse_unread(clips)
     shares = {name: facts["believed"] for name, facts in clips.items()}
@@ -83,7 +84,7 @@ def _refuse_unread(clips: Mapping[str, Facts]) -> None:
 
 
 def _is_for_the_user(error: Exception) -> bool:
-    """Whether a class of ours says it, or a full disk; all else is a fault."""
+    """Whether it is an exception class of ours, or a full disk; anything else is a fault."""
     if isinstance(error, OSError) and error.errno in FULL:
         return True
     return type(error).__module__.split(".")[0] in PACKAGES

@@ -1,4 +1,4 @@
-"""What the summary of a run tells of cameras that were moved in it."""
+"""The summary's facts about cameras that were moved during a run."""
 
 from collections.abc import Iterable
 from functools import reduce
@@ -14,14 +14,14 @@ class Move(NamedTuple):
     camera: int
     at_s: float
     confirmed_s: float | None = None
-    """When the person had confirmed its new place; None where nobody did."""
+    """Time at which the person confirmed its new place; None where that did not happen."""
 
 
 Moves = tuple[Move, ...]
 
 
 def step(moves: Moves, body: Body) -> Moves:
-    """What is told after one body more."""
+    """The facts after one more body."""
     waiting = {move.camera for move in moves if move.confirmed_s is None}
     if not (waiting or body.moved):
         return moves
@@ -36,7 +36,7 @@ def step(moves: Moves, body: Body) -> Moves:
 
 
 def facts_of_moves(moves: Moves) -> Facts:
-    """Which cameras were moved and when, and when the person had confirmed their new place.
+    """Which cameras were moved and when, and when the person confirmed their new place.
 
     `moved_cameras` is missing where none was.
     """
@@ -44,6 +44,6 @@ def facts_of_moves(moves: Moves) -> Facts:
 
 
 def moved_facts(bodies: Iterable[Body]) -> Facts:
-    """The same of all bodies of a run."""
+    """The same for all bodies of a run."""
     start: Moves = ()
     return facts_of_moves(reduce(step, bodies, start))

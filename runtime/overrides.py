@@ -1,4 +1,4 @@
-"""What a command line sets above the settings of a file."""
+"""Settings on the command line, which override those of a file."""
 
 from pathlib import Path
 
@@ -16,10 +16,10 @@ def overridden(
     landmarks: str | None = None,
     offset_s: float | None = None,
 ) -> Settings:
-    """The settings with what a command line names instead; None leaves what they say.
+    """The settings with the command line's values; None keeps a setting.
 
     Raises:
-        SettingsError: When the size is none, or the source of landmarks is, or is not there.
+        SettingsError: When the size is invalid, or the source of landmarks is, or does not exist.
     """
     try:
         named = msgspec.structs.replace(

@@ -1,4 +1,4 @@
-"""What a person reads while a command works: one line a warning or an error, and a bar."""
+"""A command's display: one line per warning or error, and a progress bar."""
 
 import json
 import math
@@ -10,7 +10,7 @@ from rich.progress import Progress
 
 Thing = TypeVar("Thing")
 Tell = Callable[[float], object]
-"""Hears how much of some work is done, in [0, 1]."""
+"""Receives the share of the work that is done, in [0, 1]."""
 
 
 def say(console: Console, text: str) -> None:
@@ -19,37 +19,37 @@ def say(console: Console, text: str) -> None:
 
 
 def warn(console: Console, text: str) -> None:
-    """What is odd but does not stop the work."""
+    """A warning: an oddity that does not stop the work."""
     _line(console, f"warning: {text}", "yellow")
 
 
 def complain(console: Console, text: str) -> None:
-    """What stops it, and the cure."""
+    """An error that stops it, and the cure."""
     _line(console, f"error: {text}", "red")
 
 
 def counted(number: int, thing: str, things: str = "") -> str:
-    """How many of something: 1 clip, 2 clips.
+    """A number with its noun: 1 clip, 2 clips.
 
     Args:
-        number: How many.
-        thing: One of them.
-        things: Several; "": with an s.
+        number: The number.
+        thing: The noun in the singular.
+        things: The plural; "": with an s.
     """
     return f"{number} {thing if number == 1 else things or f'{thing}s'}"
 
 
 def bar(console: Console) -> Progress:
-    """How far long work is; nothing where nobody looks on, as in a file."""
+    """Progress of long work; nothing is shown where the output is no terminal."""
     return Progress(console=console, transient=True, disable=not console.is_terminal)
 
 
 def by_share(
     progress: Progress, things: Sequence[Thing], description: str
 ) -> Iterator[tuple[Thing, Tell]]:
-    """Things one after the other, each with a function that is told which share of it is done.
+    """Items one after the other, each with a function that receives its progress.
 
-    One long video moves the bar with its frames, as many short ones do with each that is over.
+    One long video moves the bar with its frames, many short ones with each that is complete.
     """
     task = progress.add_task(description, total=len(things))
     for before, thing in enumerate(things):
@@ -64,10 +64,10 @@ def by_share(
 def by_pass(
     progress: Progress, things: Sequence[Thing], passes: Sequence[str]
 ) -> Iterator[tuple[Thing, Callable[[str], Tell]]]:
-    """Things one after the other, each gone through several times.
+    """Items one after the other, each processed in several passes.
 
-    With each comes a function that begins a pass, by its name, and gives another one that is told
-    which share of it is done. A pass that is left out counts as done.
+    Each item comes with a function that begins a named pass and returns the function for its
+    progress. A pass that is left out counts as done.
     """
     task = progress.add_task("", total=len(things) * len(passes))
     for before, thing in enumerate(things):
@@ -81,12 +81,12 @@ def by_pass(
 
 
 def json_text(value: Any) -> str:
-    """Strict JSON: a number that is not finite, which JSON cannot say, becomes null."""
+    """Strict JSON: a number that is not finite becomes null."""
     return json.dumps(_finite(value), indent=1, allow_nan=False)
 
 
 def _line(console: Console, text: str, style: str) -> None:
-    """One line however long: a terminal wraps it by itself, a file keeps it whole."""
+    """One line however long: a terminal wraps it itself, a file keeps it whole."""
     console.print(
         " ".join(text.split()), style=style, markup=False, highlight=False, soft_wrap=True
     )

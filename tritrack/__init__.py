@@ -1,4 +1,4 @@
-"""The front door: the commands, the processes that they start, and what programs import."""
+"""The front door: the commands, and the public API for programs."""
 
 from typing import TYPE_CHECKING, Any
 from warnings import warn
@@ -37,7 +37,7 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    """What programs import, loaded when it is asked for: a command must heed signals before."""
+    """The public names, loaded on first use: a command must handle signals before."""
     if name == "Report":
         warn("tritrack.Report is now View: use tritrack.View", DeprecationWarning, stacklevel=2)
         name = "View"

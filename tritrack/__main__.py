@@ -55,7 +55,7 @@ PLAIN: Final = {
     "Input should be less than or equal to": "it must be at most",
     "Input should be greater than or equal to": "it must be at least",
 }
-"""What the library says of a command line, and what is said instead."""
+"""The command-line library's messages, and our wording of each."""
 
 log = logging.getLogger(__name__)
 
@@ -78,7 +78,7 @@ def every_command(
         typer.Option("--version", callback=tell_version, is_eager=True, help="Print the version."),
     ] = False,
 ) -> None:
-    """Set up what all commands share."""
+    """Options of all commands."""
     os.environ["TRITRACK_LOG"] = "info" if log_level == "warning" else log_level
     logging.basicConfig(level=log_level.upper(), format="%(levelname)s %(name)s: %(message)s")
 
@@ -172,7 +172,7 @@ def tell_warning(
     file: TextIO | None = None,
     line: str | None = None,
 ) -> None:
-    """An old word of settings is told in one line; what libraries warn of, as Python tells it."""
+    """A renamed setting is reported in one line; libraries' warnings in Python's form."""
     if issubclass(category, RenamedSetting):
         warn(console, str(message))
     else:
@@ -184,7 +184,7 @@ def tell_warning(
 
 
 def refuse_usage(error: typer.TyperException) -> int:
-    """Say in one line what is wrong with a command line; a command without its words gets help."""
+    """Report an invalid command line in one line; a command without arguments shows its help."""
     text = error.format_message()
     if text.startswith("Usage:"):
         print(text, file=sys.stderr)

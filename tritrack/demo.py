@@ -1,4 +1,4 @@
-"""The main job on a synthetic person: what `make demo` shows."""
+"""The main use on a synthetic person, for `make demo`."""
 
 import tempfile
 from pathlib import Path
@@ -19,21 +19,20 @@ from synth.picture.exposure import default_rig
 from synth.write import Filming, clip_name, write_clip, write_rig
 
 PERFORMER_SEED: Final = 90_001
-"""Of a person that no model was trained on: the one in the package knows persons 1200 to 1211."""
+"""Seed of a person outside the training data: the packaged model knows persons 1200 to 1211."""
 POSTURE: Final = "raise_right_lateral"
 TAKE: Final = 1
 SIZE: Final = (320, 240)
 MOTION_S: Final = 14.0
-"""Long enough to open the page and see it move: five times, and the moment in which the fifth is
-told."""
+"""Length of the demo in performances: five, and the moment in which the fifth is reported."""
 
 
 class DemoFailed(RuntimeError):
-    """The demo ran, and was wrong; the text says what it saw."""
+    """The demo ran with a wrong result; the text names it."""
 
 
 def made_clip(folder: Path) -> Path:
-    """The demo's clip with its calibration, written below a folder."""
+    """The demo's clip with its calibration, written into a folder."""
     rig, someone = default_rig(*SIZE), person(PERFORMER_SEED)
     clip = folder / clip_name(someone, POSTURE, TAKE)
     write_clip(
@@ -48,7 +47,7 @@ def made_clip(folder: Path) -> Path:
 
 
 def refuse_other_than_demo(out: Path) -> None:
-    """Refuse to write over any run but a demo's, which can be made again.
+    """Refuse to overwrite any run but a demo's, which can be repeated.
 
     Raises:
         OtherRun: When one would be.
@@ -60,16 +59,16 @@ def refuse_other_than_demo(out: Path) -> None:
 
 
 def run_demo(out: Path, page: bool, console: Console, wait: bool = True) -> Facts:
-    """Render a clip, run the whole system on it, and check what it says.
+    """Render a clip, run the whole system on it, and check the result.
 
     Args:
         out: The run folder.
-        page: Whether it is shown on the live page.
+        page: Whether the live page shows it.
         console: As for `live`.
         wait: Whether the clip waits until the page is opened.
 
     Raises:
-        DemoFailed: When another posture was named than was performed.
+        DemoFailed: When another posture was recognised than performed.
     """
     with tempfile.TemporaryDirectory(prefix="tritrack-demo-") as folder:
         console.print(f"making a person who performs {POSTURE} ...")

@@ -26,21 +26,21 @@ ENDINGS: Final[dict[Format, tuple[str, ...]]] = {
     **{to: (Path(name).suffix,) for to, name in OWN_NAMES.items()},
     "usd": (".usdc", ".usd", ".usda"),
 }
-"""What a file's name may end in: none of them ends what a run or its video is made of."""
+"""Allowed suffixes: none of them is a suffix of a run's own files or its video."""
 
 
 class ExportError(RuntimeError):
-    """A run that cannot be exported: the text says why and what to do."""
+    """A run that cannot be exported: the text names the cause and the cure."""
 
 
 class Written(NamedTuple):
-    """What an export comes to."""
+    """The result of an export."""
 
     content: bytes
     facts: Facts
-    """What the command tells; `frames` is among them."""
+    """The command's output; it contains `frames`."""
     beside: tuple[str, bytes] | None = None
-    """Ending and content of a second file."""
+    """Suffix and content of a second file."""
 
 
 def export(
@@ -60,21 +60,21 @@ def export(
         69
 
     Args:
-        folder: That of the run.
+        folder: The run's folder.
         to: bvh, gltf, usd, trc, mot, c3d or csv.
-        out: The file to write; None: one in the run folder, in place of an earlier export.
-        scale: Unit of a BVH file, m or cm; of all others the format says it.
-        replace: What stands at `out` may be lost.
+        out: The file to write; None: the default one in the run folder, which is replaced.
+        scale: Unit of a BVH file, m or cm; other formats define theirs.
+        replace: True: a file at `out` may be replaced.
 
     Returns:
-        `file`, `files`, `frames`, and of a skeleton of fixed bones `off_mm`, how far its joints
-        are from the run's.
+        `file`, `files`, `frames`, and for a skeleton of fixed bones `off_mm`, the distance of its
+        joints from the run's.
 
     Raises:
         PastRunError: When there is no such run.
         ExportError: When it has no poses, the format's library is not installed, or the file cannot
-            be written or has the name of another format.
-        FileRefused: When a file would be lost.
+            be written or has another format's suffix.
+        FileRefused: When a file would be replaced.
     """
     if to not in OWN_NAMES:
         raise ExportError(f"there is no format {to!r}: there are {', '.join(OWN_NAMES)}")
@@ -87,22 +87,21 @@ def export_run(
     """Write a run in another format.
 
     Args:
-        folder: That of the run.
-        to: Which format.
-        out: The file to write; None: that of OWN_NAMES in the run folder, which an export before
-            may have written.
-        scale: Unit of a BVH file; of all others the format says it.
-        replace: What stands at `out` may be lost.
+        folder: The run's folder.
+        to: The format.
+        out: The file to write; None: that of OWN_NAMES in the run folder, which is replaced.
+        scale: Unit of a BVH file; other formats define theirs.
+        replace: True: a file at `out` may be replaced.
 
     Returns:
-        The file, its frames, and of a skeleton of fixed bones how far its joints are from the
+        The file, its frames, and for a skeleton of fixed bones the distance of its joints from the
         run's.
 
     Raises:
         PastRunError: When there is no such run.
         ExportError: When it has no poses, the format's library is not installed, or the file cannot
-            be written or has the name of another format.
-        FileRefused: When a file would be lost.
+            be written or has another format's suffix.
+        FileRefused: When a file would be replaced.
     """
     if scale != "m" and to != "bvh":
         raise ExportError(f"--scale is for bvh: {to} has a unit of its own, leave it out")
@@ -129,13 +128,13 @@ def export_run(
 
 
 def _refuse_ending(path: Path, to: Format) -> None:
-    """Say that a name would tell programs of another format than the file's."""
+    """Refuse a name whose suffix belongs to another format."""
     if path.suffix.lower() not in ENDINGS[to]:
         raise ExportError(f"{path} is no name for {to}: let it end in {' or '.join(ENDINGS[to])}")
 
 
 class _Animated(NamedTuple):
-    """A run as a skeleton that moves."""
+    """A run as a moving skeleton."""
 
     skeleton: "Skeleton"
     motion: "Motion"
@@ -218,7 +217,7 @@ def _c3d(run: PastRun, _name: str, _scale: Scale) -> Written:
 
 
 def _markers(run: PastRun) -> tuple[NDArray[np.float64], float, Facts]:
-    """The run's joints in even steps with its gaps, seconds a frame, and what is told of them."""
+    """The run's joints in even steps with its gaps, seconds per frame, and facts for the output."""
     from animator.even_steps import NoMotion, even_steps, with_gaps
     from animator.skeleton.planted_feet import planted
 
@@ -276,7 +275,7 @@ def _csv_rows(poses: Arrays) -> Iterator[list[int | str]]:
 
 
 def _cells(values: ArrayLike, digits: int) -> list[str]:
-    """Numbers as a spreadsheet takes them; one that is not known is an empty cell."""
+    """Numbers for a spreadsheet; an unknown one is an empty cell."""
     return [f"{value:.{digits}f}" if np.isfinite(value) else "" for value in np.ravel(values)]
 
 

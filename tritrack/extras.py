@@ -1,18 +1,18 @@
-"""What only some commands need: asked for at their start, not after an hour's work."""
+"""Optional packages of some commands, checked at their start, not after an hour's work."""
 
 from importlib.util import find_spec
 
 
 class ExtraMissing(RuntimeError):
-    """A package that a command needs is not installed; the text says how it is."""
+    """A package that a command needs is not installed; the text says how to install it."""
 
 
 def refuse_without(extra: str, *modules: str) -> None:
-    """Say what a command lacks.
+    """Refuse a command whose packages are missing.
 
     Args:
-        extra: Which brings it.
-        modules: As imports name them.
+        extra: The extra that installs them.
+        modules: Names in imports.
 
     Raises:
         ExtraMissing: When one is not installed.

@@ -1,4 +1,4 @@
-"""What the commands run by default, compiled once: what `make setup` waits for."""
+"""Compilation of all that commands run by default: `make setup` waits for it."""
 
 import tempfile
 import time
@@ -8,10 +8,10 @@ from common.cache_folder import mark_of_all
 
 
 def compile_all() -> None:
-    """Track a synthetic clip by both cameras and by one, and pass through what live parts and a
-    video meet besides, so that no later run need compile.
+    """Track a synthetic clip with both cameras and with one, and execute the further code of live
+    parts and videos, so that no later run needs to compile.
 
-    A mark in the folder of what is compiled says that this was done: the next time takes no longer
+    A marker in the folder of compiled code says that this was done: the next call takes no longer
     than importing numba.
     """
     mark = mark_of_all()

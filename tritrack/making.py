@@ -1,4 +1,4 @@
-"""Synthetic people as clips."""
+"""Clips of synthetic people."""
 
 from pathlib import Path
 
@@ -18,11 +18,12 @@ def make_clips(
     size: str,
     console: Console,
 ) -> list[Path]:
-    """Write clips with truth, showing how far it is; returns their folders.
+    """Write clips with ground truth, with a progress bar; returns their folders.
 
     Raises:
-        SettingsError: When the size or a posture's name is none, or free motion is to be a posture.
-        SynthError: When a clip cannot be written: no space, no right.
+        SettingsError: When the size or a posture's name is invalid, or free motion is requested as
+        a posture.
+        SynthError: When a clip cannot be written: no space, no permission.
     """
     _refuse_postures(wanted.motion, wanted.postures)
     try:

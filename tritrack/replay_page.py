@@ -1,4 +1,4 @@
-"""A recorded run on the live page, which plays it: pause, speed, any moment, angles over time."""
+"""A recorded run on the live page, as a player: pause, speed, any moment, angles over time."""
 
 from pathlib import Path
 from typing import Final
@@ -17,16 +17,16 @@ from runtime.store.recording import Recording, read_recording
 from tritrack.replaying import instants
 
 MOST_BYTES: Final = 160_000_000
-"""Of the frames that the page keeps for a browser: some ten minutes, as many as a browser does."""
+"""Upper bound of the kept frames, bytes: some ten minutes, as many as a browser keeps."""
 
 
 def replay_on_page(folder: Path, port: int, console: Console) -> Facts:
     """Show a recorded run on a page of this machine, until Ctrl-C.
 
     Args:
-        folder: That of the run.
-        port: Of the page.
-        console: Is told where the page is.
+        folder: The run's folder.
+        port: The page's port.
+        console: Shows the page's address.
 
     Raises:
         RecordingError, PastRunError: When there is no recording, or no run.
@@ -46,8 +46,8 @@ def replay_on_page(folder: Path, port: int, console: Console) -> Facts:
 
 
 def show(page: LivePage, recording: Recording) -> int:
-    """Tell a page all bodies of a recording, each with its silhouettes and its posture; how
-    many."""
+    """Send a page all bodies of a recording, each with its silhouettes and its posture; returns
+    their number."""
     rigs: dict[int, Rig | None] = {told.calibration: told.rig for told in recording.cameras}
     made_of = {body.captured_s: instant for body, instant in instants(recording)}
     postures = {posture.captured_s: posture for posture in recording.postures}

@@ -1,4 +1,4 @@
-"""A recorded run again: its reports through the integrator, or all that was said onto a bus."""
+"""A recorded run replayed: its reports through the integrator, or all its messages onto a bus."""
 
 import threading
 import time
@@ -29,15 +29,15 @@ from runtime.store.recording import Recording, read_recording
 from runtime.store.runs import write_run
 
 LISTEN_S: Final = 1.0
-"""Time for those who wait for the bus to come, before the first message."""
+"""Time for subscribers to connect before the first message, seconds."""
 
 
 class Replayed(NamedTuple):
-    """What the recorded reports give now."""
+    """The result of integrating recorded reports."""
 
     bodies: list[Body]
     same: int
-    """How many of them are the recorded ones, byte for byte."""
+    """Number of bodies that equal the recorded ones, byte for byte."""
     scale_source: str
 
 
@@ -45,14 +45,14 @@ def replay_run(folder: Path, out: Path | None, force: bool = False) -> Facts:
     """Send a run's recorded reports through the integrator again.
 
     Args:
-        folder: That of the run.
-        out: A folder that gets what they give as a run of its own; None: nothing is written.
-        force: The run of something else may be written over.
+        folder: The run's folder.
+        out: Folder for the result as a run of its own; None: nothing is written.
+        force: A run of another source may be overwritten.
 
     Raises:
         RecordingError: When there is no recording.
         RunError: When `out` cannot be written.
-        OtherRun: When it holds the run of something else.
+        OtherRun: When it holds a run of another source.
     """
     now = run_of("replay", [str(folder)])
     if out is not None and not force:
@@ -68,7 +68,7 @@ def replay_run(folder: Path, out: Path | None, force: bool = False) -> Facts:
 
 
 def integrated(recording: Recording) -> Replayed:
-    """The bodies that the recorded reports give, in the recorded instants."""
+    """The bodies from the recorded reports, at the recorded instants."""
     head = recording.head
     opening = opening_posture.init(head.body)
     state = merge_state.init(
@@ -106,7 +106,7 @@ def instants(recording: Recording) -> Iterator[tuple[Body, Instant]]:
 
 
 def _by_frame(reports: Sequence[View]) -> defaultdict[int, list[View]]:
-    """A viewer that is started again may count its frames anew."""
+    """A restarted viewer may count its frames anew."""
     by_frame = defaultdict[int, list[View]](list)
     for report in reports:
         by_frame[report.frame].append(report)
@@ -114,32 +114,32 @@ def _by_frame(reports: Sequence[View]) -> defaultdict[int, list[View]]:
 
 
 def _near(reports: Sequence[View], body: Body, tolerance_s: float) -> View | None:
-    """The last report that was taken when the body was."""
+    """The last report captured when the body was."""
     near = [r for r in reports if abs(r.captured_s - body.captured_s) <= tolerance_s + 1e-9]
     return near[-1] if near else None
 
 
 def replay_on_bus(folder: Path, bus_settings: BusSettings, speed: float, console: Console) -> Facts:
-    """Say again all that a recorded run said, at its pace, to whoever listens at an endpoint.
+    """Publish all messages of a recorded run again, at its pace, at an endpoint.
 
-    Messages are as recorded but for `clock_s`, which is when they are said.
+    Messages are as recorded except for `clock_s`, the time of publication.
 
     Args:
-        folder: That of the run.
-        bus_settings: Where others connect to, and with which keys.
+        folder: The run's folder.
+        bus_settings: Where others connect, and the keys.
         speed: 2.0 is twice as fast.
-        console: Is told where to listen.
+        console: Shows the endpoint.
 
     Raises:
         RecordingError: When there is no recording.
         BusError: When the endpoint is taken or is none.
-        KeysError: When keys are named that are not there.
+        KeysError: When the named keys do not exist.
     """
     recording = read_recording(folder)
     room = recording.head.settings.room
     with open_hub(bus_settings, room) as bus:
         bus.keep(Cameras)
-        bus.announce("integrator")  # whose place it takes: who listens goes when it does
+        bus.announce("integrator")  # in the integrator's name: subscribers end when it leaves
         console.print(
             f"{recording.head.name}: room {room} at {bus_settings.endpoint}", highlight=False
         )
@@ -150,11 +150,12 @@ def replay_on_bus(folder: Path, bus_settings: BusSettings, speed: float, console
 
 
 def say(recording: Recording, bus: Bus, speed: float) -> int:
-    """Publish all messages at their pace, each rig before the bodies that it tells; how many."""
+    """Publish all messages at their pace, each rig before the bodies computed with it; returns
+    their number."""
     rigs = deque(_rigs(recording))
     moments: list[Moment] = [*chain.from_iterable(recording.reports)]
     moments += [*recording.bodies, *recording.postures]
-    moments.sort(key=lambda message: message.captured_s)  # stable: reports, body, posture
+    moments.sort(key=lambda message: message.captured_s)  # stable sort: reports, body, posture
     begin_s, stop = time.monotonic(), threading.Event()
     first_s = moments[0].captured_s if moments else 0.0
     said = calibration = 0
@@ -171,7 +172,7 @@ def say(recording: Recording, bus: Bus, speed: float) -> int:
 
 
 def _rigs(recording: Recording) -> list[Cameras]:
-    """The rigs of a run in their order; one that was known before it is in the head alone."""
+    """The rigs of a run in order; one that was known before it is in the header alone."""
     head, told = recording.head, recording.cameras
     if head.rig is None or any(cameras.calibration == 0 for cameras in told):
         return told

@@ -1,4 +1,4 @@
-"""What Ctrl-C and SIGTERM do to a command that is not ready for them: a word, a code, an end."""
+"""Ctrl-C and SIGTERM before a command can handle them: a message, an exit code, an end."""
 
 import os
 import signal
@@ -8,21 +8,21 @@ from typing import Final, NoReturn
 
 WORD: Final = "stopped before it was done"
 BY_SIGNAL: Final = 128
-"""What shells add to a signal's number where a signal ended a command."""
+"""Added to a signal's number in exit codes, by shells' convention."""
 STOPS: Final = (BY_SIGNAL + signal.SIGINT, BY_SIGNAL + signal.SIGTERM)
 """Exit codes of a command that was stopped."""
 
 
 class Terminated(SystemExit):
-    """SIGTERM came: what is open is closed in order, as after Ctrl-C, which typer takes for its
-    own and tells no cause of."""
+    """SIGTERM came: open resources are closed in order, as after Ctrl-C, which typer catches
+    itself without a cause."""
 
 
 def heed_at_once() -> None:
-    """While a command's own modules are imported, a signal ends it with its word and code.
+    """While a command's own modules are imported, a signal ends it with its message and code.
 
-    A process of a run imports the command too: its supervisor tells it how to end. So may another
-    program: its signals are its own. Called before anything that takes a while is imported.
+    A process of a run imports the command too, but its supervisor decides how it ends. Another
+    program may import it as well, and its signals are its own. Called before any slow import.
     """
     folder, name = os.path.split(sys.argv[0])
     is_command = name == "tritrack" or (
@@ -34,20 +34,21 @@ def heed_at_once() -> None:
 
 
 def heed_in_order() -> None:
-    """From now on a signal is raised where the command is, so that it closes what it opened."""
+    """From now on a signal raises an exception where the command is, so that it closes its
+    resources."""
     signal.signal(signal.SIGINT, signal.default_int_handler)
     signal.signal(signal.SIGTERM, _terminated)
 
 
 def code_of_stop(error: BaseException) -> int:
-    """The exit code of a command that a signal ended, as shells count it."""
+    """The exit code of a command that a signal ended, by shells' convention."""
     number = signal.SIGTERM if isinstance(error, Terminated) else signal.SIGINT
     return BY_SIGNAL + number
 
 
 def _is_started_by_us() -> bool:
     """Whether multiprocessing started this process: it is imported then, and while that process
-    still imports the command it says so in `_inheriting` alone."""
+    still imports the command only `_inheriting` shows it."""
     started = sys.modules.get("multiprocessing.process")
     return started is not None and (
         started.parent_process() is not None

@@ -285,8 +285,7 @@ def _patched(state: State, index: int) -> State:
 
 
 def _near_px(state: State, guide: Guide | None) -> Pixel | None:
-    """The body's expected place: at its landmarks, by the guide, or in a single view the last
-    one."""
+    """The body's expected place: at its landmarks, by the guide, or in a single view its last."""
     if state.landmarks is not None and is_trusted(state.landmarks):
         return state.landmarks.joints_px[PELVIS]
     known = expected_body(guide, state.setup.viewer)

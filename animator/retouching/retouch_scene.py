@@ -144,7 +144,7 @@ class RetouchScene:
         return {
             "position": middle + away,
             "look_at": middle,
-        }  # the direction is kept when it is moved
+        }  # moves keep the direction
 
     def _stand_back(self, client: viser.ClientHandle) -> None:
         """Show the whole scene in a phone's window too, above the panel; again when the phone is

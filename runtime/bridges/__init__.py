@@ -1,1 +1,1 @@
-"""Bridges: what a live run says, in the protocols of other programs."""
+"""Bridges: a live run's messages in the protocols of other programs."""

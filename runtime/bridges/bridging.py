@@ -1,4 +1,4 @@
-"""A bridge at work: bodies of a run in, another protocol out, until the run is over."""
+"""A running bridge: bodies of a run in, another protocol out, until the run is over."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -20,15 +20,15 @@ Protocol = Literal["osc", "vmc", "lsl"]
 def bridge(
     protocol: Protocol, endpoint: str, room: str, to: str, console: Console, keys: str = ""
 ) -> int:
-    """Hand on every body; how many.
+    """Forward every body; returns their number.
 
     Args:
-        protocol: Which.
-        endpoint: Of the run.
-        room: Of the run.
-        to: `HOST:PORT` that OSC and VMC are sent to.
-        console: Is told at once what is waited for.
-        keys: Folder of a client's keys, where the run has some.
+        protocol: Name of the protocol.
+        endpoint: The run's endpoint.
+        room: The run's site.
+        to: `HOST:PORT` to which OSC and VMC are sent.
+        console: Shows what the bridge waits for.
+        keys: Folder of a client's keys, where the run has keys.
 
     Raises:
         BridgeError: When the protocol's library is missing, or `to` is no address.

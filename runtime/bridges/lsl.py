@@ -1,4 +1,4 @@
-"""A body as a stream of the Lab Streaming Layer, stamped with when its frame was taken."""
+"""A body as a stream of the Lab Streaming Layer, stamped with the frame's capture time."""
 
 import math
 import time
@@ -14,11 +14,11 @@ CHANNELS: Final = (
     *((f"{joint}_confidence", "probability") for joint in JOINT_NAMES),
     *((f"{angle}_deg", "degrees") for angle in ANGLE_NAMES),
 )
-"""Label and unit of each."""
+"""Label and unit of each channel."""
 
 
 def sample_of(body: Body) -> list[float]:
-    """The numbers of CHANNELS; NaN where there is no pose."""
+    """The values of CHANNELS; NaN where there is no pose."""
     if not (body.joints_m and body.pose):
         return [math.nan] * len(CHANNELS)
     places = [value for place_m in body.joints_m for value in place_m]
@@ -26,7 +26,7 @@ def sample_of(body: Body) -> list[float]:
 
 
 def lsl_outlet(name: str = "tritrack") -> Callable[[Body], None]:
-    """What pushes bodies into a stream that recorders on the network find by its name.
+    """A sender of bodies into a stream that recorders on the network find by name.
 
     Raises:
         BridgeError: When pylsl is not installed.

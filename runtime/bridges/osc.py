@@ -1,4 +1,4 @@
-"""A body as Open Sound Control: joints and angles by name, one bundle a body."""
+"""A body as Open Sound Control: joints and angles by name, one bundle per body."""
 
 import logging
 import socket
@@ -12,7 +12,7 @@ log = logging.getLogger(__name__)
 
 
 class BridgeError(RuntimeError):
-    """A bridge that cannot be built; the text names the cure."""
+    """A bridge that cannot be opened; the text names the cure."""
 
 
 def osc_packet(body: Body) -> bytes:
@@ -31,7 +31,7 @@ def osc_packet(body: Body) -> bytes:
 
 
 def message(address: str, values: list[Any], types: str) -> Any:
-    """One OSC message; `types` as OSC writes them, a letter a value."""
+    """One OSC message; `types` in OSC's notation, a letter per value."""
     from pythonosc.osc_message_builder import OscMessageBuilder
 
     builder = OscMessageBuilder(address)
@@ -41,10 +41,10 @@ def message(address: str, values: list[Any], types: str) -> Any:
 
 
 def osc_sender(to: str) -> Callable[[bytes], None]:
-    """What sends packets to `HOST:PORT` by UDP; nobody need listen there.
+    """A sender of packets to `HOST:PORT` by UDP; no receiver is required.
 
-    The host may be a network's broadcast address. What a network does not take that went away is
-    not sent, and that is said once, until it is back.
+    The host may be a network's broadcast address. While the network is down, packets are dropped,
+    which is logged once, until it is back.
 
     Raises:
         BridgeError: When that is no address, or python-osc is not installed.

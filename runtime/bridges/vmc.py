@@ -1,7 +1,7 @@
-"""A body as VMC (Virtual Motion Capture): turns of Unity's humanoid bones, one bundle a body.
+"""A body as VMC (Virtual Motion Capture): turns of Unity's humanoid bones, one bundle per body.
 
-Source: the VMC protocol specification, version 2.x: addresses of a Performer; Unity's axes are
-left-handed, +x right of who faces +z, +y up, so x changes its sign.
+Source: the VMC protocol specification, version 2.x: addresses of a Performer. Unity's axes are
+left-handed, +x right of a person who faces +z, +y up, so x changes its sign.
 """
 
 from typing import Any, Final, NamedTuple
@@ -26,21 +26,21 @@ UNITY: Final = {
         ("Leg", "LowerLeg"),
     )
 }
-"""Unity's names of BONES that it calls otherwise."""
+"""Unity's names of BONES that differ from ours."""
 PELVIS: Final = JOINT_NAMES.index("pelvis")
 MEASURED: Final = 30
-"""Poses whose median lengths make the skeleton; until then those that came."""
+"""Number of poses whose median lengths make the skeleton; before, all poses so far."""
 TYPES: Final = "sfffffff"
 
 
 class Measured(NamedTuple):
-    """The skeleton so far, and how it stood last."""
+    """The skeleton so far, and its last twists."""
 
     poses: tuple[Any, ...] = ()
     """(15, 3) or, with hands and feet, (22, 3) each, at most MEASURED."""
     skeleton: Skeleton | None = None
     before: Before | None = None
-    """How the limbs were twisted in the body before, as straight ones are still."""
+    """Twists of the limbs in the body before, which straight limbs keep."""
 
 
 def step(state: Measured, body: Body) -> tuple[Measured, bytes | None]:
@@ -59,7 +59,7 @@ def step(state: Measured, body: Body) -> tuple[Measured, bytes | None]:
 
 
 def _packet(body: Body, skeleton: Skeleton, pelvis_m: Vector, axes: Any) -> bytes:
-    """The bundle of a pose whose bones are turned so, (bones, 3, 3)."""
+    """The bundle of a pose with these turns of its bones, (bones, 3, 3)."""
     from pythonosc.osc_bundle_builder import IMMEDIATELY, OscBundleBuilder
 
     turns = Rotation.from_matrix(axes, assume_valid=True).as_quat().tolist()

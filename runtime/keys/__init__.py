@@ -1,1 +1,1 @@
-"""Keys of a bus: made, and looked over."""
+"""The keys of a bus: how they are made and checked."""

@@ -1,4 +1,4 @@
-"""An own certificate authority, and a certificate for each part of a run, signed by it."""
+"""A certificate authority of one's own, and a certificate for each part of a run, signed by it."""
 
 import ipaddress
 import os
@@ -18,28 +18,29 @@ from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
 from common.bus.bus_keys import AUTHORITY, HUB, PARTS, KeysError, Part, pair_of
 
 OWN_HOSTS: Final = ("localhost", "127.0.0.1", "::1")
-"""The hub answers to these on its own machine."""
+"""Names of the hub on its own machine."""
 EARLIER: Final = timedelta(hours=1)
-"""Certificates hold from a little before they are made: another host's clock may be behind."""
+"""How long before their creation certificates begin to be valid: another host's clock may be
+behind."""
 LABEL: Final = re.compile(r"[a-zA-Z0-9]([a-zA-Z0-9-]{0,61}[a-zA-Z0-9])?")
 
 
 def make_keys(folder: Path, hosts: Sequence[str], days: int, *, force: bool = False) -> list[Path]:
     """Write the authority's certificate, and certificate and key of each part.
 
-    The authority's own key is forgotten: nobody can sign another certificate, ourselves included.
+    The authority's own key is not kept: no more certificates can be signed.
 
     Args:
-        folder: Is made where it is not there.
-        hosts: Names or addresses, beside this machine's own, by which others call the integrator.
-        days: How long all hold.
-        force: Replace keys that are there.
+        folder: Created where missing.
+        hosts: Names or addresses of the integrator's host, beside this machine's own.
+        days: Validity of all certificates.
+        force: Replace existing keys.
 
     Returns:
-        What was written; keys have mode 0600.
+        The written files; keys have mode 0600.
 
     Raises:
-        KeysError: When a host is none, or keys are there, or the folder cannot be written.
+        KeysError: When a host name is invalid, keys exist, or the folder cannot be written.
     """
     names = [_general_name(host) for host in (*OWN_HOSTS, *hosts)]
     paths = [folder / AUTHORITY, *(path for part in PARTS for path in pair_of(folder, part))]
@@ -98,7 +99,7 @@ _AUTHORITY: Final = "tritrack authority"
 
 
 def _usage(part: Part) -> x509.ExtendedKeyUsage:
-    """Only the hub's certificate is a server's: who holds another cannot pose as the hub."""
+    """Only the hub's certificate is a server's: no other part can pose as the hub."""
     server, client = ExtendedKeyUsageOID.SERVER_AUTH, ExtendedKeyUsageOID.CLIENT_AUTH
     return x509.ExtendedKeyUsage([server if part == HUB else client])
 
@@ -117,7 +118,7 @@ def _general_name(host: str) -> x509.GeneralName:
 
 
 def _write(path: Path, content: bytes) -> None:
-    """A new file; a key is never, not for a moment, for others to read."""
+    """A new file; a key is at no time readable by others."""
     mode = 0o600 if path.suffix == ".key" else 0o644
     with os.fdopen(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, mode), "wb") as file:
         file.write(content)

@@ -1,1 +1,1 @@
-"""Live runs: the table of processes, their supervision, what is recorded."""
+"""Live runs: the table of processes, their supervision, their records."""

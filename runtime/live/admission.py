@@ -1,4 +1,4 @@
-"""What a live run is refused for, before any of its processes starts."""
+"""Checks of a live run before any of its processes starts."""
 
 from typing import Final
 
@@ -14,23 +14,23 @@ from runtime.store.recording import refuse_without_library
 MOST_LIVE: Final = 2
 """Cameras of a live run."""
 NO_POSTURE: Final = -1
-"""posture_id of a clip that shows none of the postures: free motion, a test of the tracker."""
+"""posture_id of a clip that shows none of the postures: free motion, a test of tracking."""
 
 
 class LiveRefused(ValueError):
-    """A live run that cannot begin; the text says why and what to do."""
+    """A live run that cannot begin; the text names the cause and the cure."""
 
 
 def admitted(settings: Settings, record: bool, console: Console) -> Settings:
-    """Settings that can be worked with, with the endpoint and the session that they leave open.
+    """Checked settings, with an open endpoint and session filled in.
 
     Args:
-        settings: Of the run.
-        record: It is to be recorded.
-        console: Is told of an endpoint that was chosen.
+        settings: The run's settings.
+        record: Whether it is recorded.
+        console: Shows a chosen endpoint.
 
     Raises:
-        LiveRefused, RecordingError, PortHeld, PageError, KeysError: When they cannot be.
+        LiveRefused, RecordingError, PortHeld, PageError, KeysError: When a check fails.
     """
     refuse_mode(settings)
     if record:
@@ -43,13 +43,13 @@ def admitted(settings: Settings, record: bool, console: Console) -> Settings:
 
 
 def opened(settings: Settings, name: str) -> Clip:
-    """The clip of a run that will not fail for what can be known before.
+    """The clip of a run that passed all checks possible before it starts.
 
-    Its imports take a second, in which the page is opened.
+    Its imports take a second, during which the page opens.
 
     Args:
-        settings: Of the run.
-        name: Of the run; the clip's when empty.
+        settings: The run's settings.
+        name: Name of the run; the clip's where empty.
 
     Raises:
         ClipError, LiveRefused, ModelError, SettingsError: When a process would fail.
@@ -70,7 +70,7 @@ def opened(settings: Settings, name: str) -> Clip:
 
 
 def _refuse_what_would_fail(settings: Settings, clip: Clip) -> None:
-    """Say before any process starts what one of them would fail on."""
+    """Raise any error that a process would meet, before one starts."""
     from recognizer.__main__ import model_of
     from viewer.landmarks.landmark_sources import refuse_landmarks
 
@@ -80,10 +80,10 @@ def _refuse_what_would_fail(settings: Settings, clip: Clip) -> None:
 
 
 def refuse_mode(settings: Settings) -> None:
-    """Say that the thesis's mode has no processes.
+    """Refuse the thesis's mode, which has no processes.
 
     Raises:
-        LiveRefused: When it is asked for.
+        LiveRefused: When it is requested.
     """
     if METHODS[settings.mode].stick_lifting:
         raise LiveRefused(
@@ -93,10 +93,10 @@ def refuse_mode(settings: Settings) -> None:
 
 
 def refuse_a_third_camera(settings: Settings) -> None:
-    """Say that live runs have viewers 1 and 2 alone.
+    """Refuse cameras other than 1 and 2.
 
     Raises:
-        LiveRefused: When there are other cameras.
+        LiveRefused: When there are others.
         ClipError: As `footage_of`.
     """
     from common.video.clip_sources import footage_of

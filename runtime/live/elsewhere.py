@@ -1,4 +1,4 @@
-"""Cameras of another host: the integrator and the recognizer know them by the calibration alone."""
+"""Cameras on other hosts: integrator and recognizer know them by the calibration alone."""
 
 import msgspec
 
@@ -12,26 +12,26 @@ from common.video.pictures import Source, VideoInfo
 
 
 class Unopened(Decoder):
-    """Takes the calibration's word for a camera, which may be plugged in elsewhere."""
+    """Takes a camera's facts from the calibration, as it may be attached to another host."""
 
     def __init__(self, camera: VideoInfo) -> None:
-        """What each camera is."""
+        """Facts of each camera."""
         super().__init__()
         self._camera = camera
 
     def probe(self, source: Source) -> VideoInfo:
-        """What a source is; a film is looked into, as ever."""
+        """The facts of a source; a file is opened, as usual."""
         return self._camera if isinstance(source, int) else super().probe(source)
 
 
 def two_camera_clip(settings: Settings) -> Clip:
-    """The clip that settings name, with a camera for each viewer where it is calibrated.
+    """The clip of the settings, with a camera for each viewer where it is calibrated.
 
-    Cameras that are calibrated are not opened: their pictures have the calibration's size, and come
-    at `fps` of the settings, or of the calibration, or 15 a second.
+    Calibrated cameras are not opened: their pictures have the calibration's size, and come at `fps`
+    of the settings, or of the calibration, or 15 a second.
 
     Raises:
-        ClipError: When something is missing, or contradicts the rest.
+        ClipError: When something is missing or inconsistent.
     """
     path = find_calibration(settings, companions_folder(settings, footage_of(settings)))
     try:

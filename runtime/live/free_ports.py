@@ -1,4 +1,4 @@
-"""The ports of a run: refused before anything starts where they are held, or found free."""
+"""The ports of a run: refused before anything starts where they are taken, or found free."""
 
 import importlib.util
 import re
@@ -19,16 +19,16 @@ SESSION_BYTES: Final = 8
 
 
 class PortHeld(ValueError):
-    """A port that another program holds; the text names it and the cure."""
+    """A port that another program uses; the text names it and the cure."""
 
 
 def refuse_held_ports(settings: Settings) -> None:
-    """Say before anything starts that the bus, the page or the metrics could not be opened.
+    """Check that bus, page and metrics can be opened, before anything starts.
 
     Raises:
-        PortHeld: When the endpoint of the bus or the address of the metrics is held, or the page
+        PortHeld: When the endpoint of the bus or the address of the metrics is taken, or the page
             or the metrics lack a library.
-        PageError: When the page's port is.
+        PageError: When the page's port is taken.
         KeysError: When a part of a live run lacks its keys.
     """
     if settings.bus.keys:
@@ -48,7 +48,7 @@ def own_session(settings: Settings) -> Settings:
 
 
 def free_settings(settings: Settings) -> Settings:
-    """The same settings with an endpoint and a page on ports that nobody holds."""
+    """The same settings with free ports for endpoint and page."""
     bus, page = _free_port(), _free_port()
     kind = "tls" if settings.bus.keys else "tcp"
     return msgspec.structs.replace(
@@ -68,7 +68,7 @@ def with_free_endpoint(settings: Settings) -> Settings:
 
 
 def ports(settings: Settings) -> list[int]:
-    """What a run listens on; what it may choose is left out."""
+    """The ports of a run; those that it may choose are left out."""
     bus = TCP.fullmatch(settings.bus.endpoint)
     found = [int(bus["port"])] if bus is not None else []
     found += [settings.page.port] if settings.page.port else []
@@ -76,10 +76,10 @@ def ports(settings: Settings) -> list[int]:
 
 
 def refuse_held_endpoint(settings: Settings) -> None:
-    """Say that the bus could not be opened; what is no TCP endpoint is left to who opens it.
+    """Check that the bus can be opened; an endpoint other than TCP is checked when it is opened.
 
     Raises:
-        PortHeld: When the endpoint is held.
+        PortHeld: When the endpoint is taken.
     """
     endpoint = settings.bus.endpoint
     where = TCP.fullmatch(endpoint)
@@ -94,11 +94,11 @@ def refuse_held_endpoint(settings: Settings) -> None:
 
 
 def refuse_held_page(settings: Settings) -> None:
-    """Say that the page could not be opened; a run without one needs nothing.
+    """Check that the page can be opened; a run without one needs nothing.
 
     Raises:
-        PortHeld: When a library lacks.
-        PageError: When the port is held.
+        PortHeld: When a library is missing.
+        PageError: When the port is taken.
     """
     if not settings.page.port:
         return
@@ -114,10 +114,10 @@ def refuse_held_page(settings: Settings) -> None:
 
 
 def refuse_held_metrics(address: str) -> None:
-    """Say that metrics could not be served there; nowhere when empty.
+    """Check that metrics can be served at an address; nothing where it is empty.
 
     Raises:
-        PortHeld: When the address is held, or a library lacks.
+        PortHeld: When the address is taken, or a library is missing.
     """
     if not address:
         return
@@ -135,7 +135,7 @@ def refuse_held_metrics(address: str) -> None:
 
 
 def _trouble(host: str, port: int) -> str:
-    """Why nobody could listen there, or ""."""
+    """Why a port cannot be opened, or ""."""
     try:
         found = socket.getaddrinfo(host, port)
         with socket.socket(found[0][0]) as trial:

@@ -1,4 +1,4 @@
-"""What a run does for its page: starts its process, does what is asked for there, tells the end."""
+"""The run's side of its page: starts its process, carries out commands, reports the end."""
 
 import math
 import socket
@@ -25,20 +25,20 @@ from runtime.store.past_journal import Journalled
 from runtime.store.runs import RunError, write_postures, write_run
 
 SAVED: Final = "saved"
-"""Folder of what the person at the page saved, below the run's."""
+"""Folder in the run's for the parts that the user saved."""
 LAST_S: Final = 15.0
 ANSWERS_S: Final = 0.2
 FOLLOWED: Final = ("tracking", "predicted")
-"""Status of somebody who may be lost."""
+"""Statuses of a person who may be lost."""
 GONE_S: Final = 2.0
-"""A page at which nobody looks has closed by then."""
+"""Seconds within which an unwatched page has closed."""
 
 FactsOf = Callable[[SoFar], Facts]
-"""Gives what the summary of a part of the run says."""
+"""Gives the summary's facts for a part of the run."""
 
 
 class PageDesk:
-    """The run's side of its page; without a page all of it does nothing."""
+    """The run's side of its page; without a page all methods do nothing."""
 
     def __init__(
         self,
@@ -48,14 +48,14 @@ class PageDesk:
         context: ProcessContext,
         launcher: Launcher | None = None,
     ) -> None:
-        """Start the page's process at once: people shall not wait for what compiles.
+        """Start the page's process at once: users need not wait for compilation.
 
-        One in its place begins by the launcher, if there is one.
+        A restarted page uses the launcher, if there is one.
         """
         self.stopped = False
-        """The run was ended at the page."""
+        """True: the run was ended at the page."""
         self.facts: FactsOf = lambda _: {}
-        """Gives what the summary of a saved part tells."""
+        """Gives the summary's facts for a saved part."""
         self.watched: Watched | None = None
         self._settings, self._out = settings, out
         self._bus: Bus | None = None
@@ -77,7 +77,7 @@ class PageDesk:
 
     @property
     def address(self) -> str:
-        """What lets a browser find the page, and in; "" while it does not answer."""
+        """Address and token of the page; "" while it does not answer."""
         if self.watched is None:
             return ""
         port = self._settings.page.port
@@ -88,15 +88,15 @@ class PageDesk:
         return invitation_of(self._entrance, port)
 
     def listen(self, bus: Bus) -> None:
-        """Hear what is asked for from now on."""
+        """Subscribe to commands from now on."""
         self._bus, self._commands = bus, bus.subscribe(Command)
 
     def serve(self, heard: Any, stop: threading.Event) -> None:
-        """Do what was asked for since.
+        """Carry out the commands since the last call.
 
         Args:
-            heard: What the run said so far: `bodies` and `postures`.
-            stop: Ends the run, if that is asked for.
+            heard: The run's messages so far: `bodies` and `postures`.
+            stop: Ends the run, if that is commanded.
         """
         for command in self._commands.drain() if self._commands else ():
             if command.what == "stop":
@@ -115,30 +115,30 @@ class PageDesk:
             self._keep_lost(heard)
 
     def leave(self, heard: Any) -> None:
-        """The run is over, and its bus about to close: write what is recorded, hear no more."""
+        """The run is over, and its bus about to close: write the recorded part, unsubscribe."""
         self._finish(heard)
         self._bus = self._commands = None
 
     def _finish(self, heard: Any) -> None:
-        """Write what is recorded, if anything is; what cannot be written is recorded further."""
+        """Write the recorded part, if any; if that fails, recording goes on."""
         if self._began_s is not None and self._write(
             "end_record", self._began_s, "recording", heard
         ):
             self._began_s = None
 
     def end(self, facts: Facts, stop: threading.Event, say: Callable[[], None]) -> None:
-        """Tell the page that the run is over, and wait until nobody looks at it any more.
+        """Report the run's end to the page, and wait until no browser shows it.
 
         Args:
-            facts: What came of the run.
+            facts: Outcome of the run.
             stop: Ends the wait.
-            say: Called where there is a wait.
+            say: Called where it waits.
         """
         if self.watched is None or self._ending is None:
             return
         try:
             self._ending.send({**facts, "out": str(self._out)})
-        except OSError:  # it has gone
+        except OSError:  # it has ended
             return
         process = self.watched.running.process
         process.join(GONE_S)
@@ -153,7 +153,7 @@ class PageDesk:
             self.watched.end()
 
     def _keep_lost(self, heard: Any) -> None:
-        """Write what came before somebody was lost from sight, no moment twice."""
+        """Save the time before a person was lost, no moment twice."""
         for body in heard.bodies.newest(lambda body: body.captured_s > self._seen_s):
             self._seen_s = body.captured_s
             if self._followed and body.status == "lost" and self._seen_s > self._kept_s + LAST_S:
@@ -162,8 +162,8 @@ class PageDesk:
             self._followed = body.status in FOLLOWED
 
     def _write(self, what: Wish, first_s: float, name: str, heard: Any) -> bool:
-        """A part of the run as a run folder of its own, what has left the memory too; whether it
-        is there."""
+        """Save a part of the run as a run folder, including messages no longer in memory;
+        whether it was saved."""
         bodies = WholeRun(heard.bodies, Journalled(self._out, Body), first_s)
         postures = WholeRun(heard.postures, Journalled(self._out, Posture), first_s)
         began_s = next((body.captured_s for body in bodies), None)
@@ -188,6 +188,6 @@ class PageDesk:
 
 
 def _newest_s(bodies: MessageLog[Any]) -> float:
-    """When the newest body was seen; 0 where there is none."""
+    """Capture time of the newest body; 0 where there is none."""
     newest = bodies.newest(lambda _: True, most=1)
     return float(newest[0].captured_s) if newest else 0.0

@@ -1,4 +1,4 @@
-"""The processes of a live run: the table of them, how one is started, and how it is ended."""
+"""The processes of a live run: their table, how each starts, and how it ends."""
 
 from collections.abc import Callable
 from multiprocessing import Pipe
@@ -14,7 +14,7 @@ from common.video.clip_facts import Clip
 from runtime.live.thread_worker import ThreadWorker, confessed
 
 END_S: Final = 5.0
-"""What most processes may take to close their doors."""
+"""Default time to close, seconds."""
 
 
 class Part(NamedTuple):
@@ -24,28 +24,28 @@ class Part(NamedTuple):
     main: Callable[..., None]
     arguments: tuple[Any, ...]
     leads: bool = False
-    """The run is over when all that lead have ended."""
+    """The run is over when all leading processes have ended."""
     spare: bool = False
-    """The run goes on where it was given up."""
+    """The run goes on without it once it is given up."""
     beats: bool = False
-    """While it runs it says so once a second, whatever the others do: if it does not, it hangs."""
+    """It sends a pulse every second, whatever the others do; without one it hangs."""
     nests: bool = False
     """It starts processes of its own."""
     end_s: float = END_S
-    """How long it may take to close its doors before it is killed."""
+    """Time to close before it is killed, seconds."""
     launcher: Launcher | None = None
-    """Where it begins soonest."""
+    """How it starts fastest."""
     beside: bool = False
     """It is a thread of the supervisor's process."""
 
 
 class Running(NamedTuple):
-    """A part that was started."""
+    """A started part."""
 
     part: Part
     process: Worker
     words: Connection
-    """On which it says why it fails."""
+    """Connection on which it reports its error."""
 
 
 def live_parts(
@@ -55,13 +55,13 @@ def live_parts(
     launcher: Launcher,
     beside: bool = False,
 ) -> list[Part]:
-    """The table of a live run: who listens comes before who speaks (P2).
+    """The table of a live run: receivers come before senders (P2).
 
     Args:
-        settings: Of the run.
-        clip: What is looked at.
-        context: How its parts run.
-        launcher: Where they begin soonest.
+        settings: The run's settings.
+        clip: The run's clip.
+        context: Context for the parts.
+        launcher: How they start fastest.
         beside: They are threads of this process instead.
     """
     period_s = clip.every / clip.views[0].fps
@@ -80,7 +80,7 @@ def live_parts(
 
 
 def names_of(clip: Clip) -> tuple[str, ...]:
-    """The processes that a run cannot do without."""
+    """The processes that a run requires."""
     return ("integrator", "recognizer", *(f"viewer {view.number}" for view in clip.views))
 
 
@@ -92,48 +92,48 @@ def page_part(
     entrance: Entrance,
     launcher: Launcher | None = None,
 ) -> Part:
-    """The process of the live page: started first, and the last to end."""
+    """The process of the live page: started first, ended last."""
     arguments = (settings, context, title, ending, entrance)
     return Part("animator", animator_main, arguments, launcher=launcher)
 
 
 def integrator_main(*arguments: Any) -> None:
-    """The integrator, imported where it runs."""
+    """The integrator, imported in its own process."""
     from integrator.__main__ import main
 
     main(*arguments)
 
 
 def recognizer_main(*arguments: Any) -> None:
-    """The recognizer, imported where it runs."""
+    """The recognizer, imported in its own process."""
     from recognizer.__main__ import main
 
     main(*arguments)
 
 
 def animator_main(*arguments: Any) -> None:
-    """The animator, imported where it runs."""
+    """The animator, imported in its own process."""
     from animator.__main__ import main
 
     main(*arguments)
 
 
 def metrics_main(*arguments: Any) -> None:
-    """The metrics, imported where they are served."""
+    """The metrics, imported in their own process."""
     from runtime.outside.metrics_process import main
 
     main(*arguments)
 
 
 def viewer_main(*arguments: Any) -> None:
-    """A viewer, imported where it runs."""
+    """A viewer, imported in its own process."""
     from viewer.__main__ import main
 
     main(*arguments)
 
 
 def started(part: Part) -> Running:
-    """A part, begun: beside its supervisor, by its launcher, else as a new Python."""
+    """Start a part: as a thread, by its launcher, else as a new Python."""
     if part.beside:
         ours, theirs = Pipe(duplex=False)
         return Running(part, ThreadWorker(part.name, part.main, part.arguments, theirs), ours)
@@ -143,7 +143,7 @@ def started(part: Part) -> Running:
 
 
 def end(one: Running) -> bool:
-    """Ask, wait, then kill; whether it ended without that."""
+    """Ask it to end, wait, then kill; whether it ended without the kill."""
     if one.process.is_alive():
         one.process.terminate()
         one.process.join(one.part.end_s)
@@ -155,7 +155,7 @@ def end(one: Running) -> bool:
 
 
 def last_words(one: Running) -> str:
-    """Why a process ended; one that was killed says nothing."""
+    """Why a process ended; one that was killed reports nothing."""
     try:
         if one.words.poll():
             return str(one.words.recv())
@@ -168,7 +168,7 @@ def last_words(one: Running) -> str:
 def _guarded(
     name: str, main: Callable[..., None], arguments: tuple[Any, ...], words: Connection
 ) -> None:
-    """Run a part; what it cannot do is said in one line, not in a traceback."""
+    """Run a part; an error becomes one line, not a traceback."""
     try:
         main(*arguments)
     except Exception as error:

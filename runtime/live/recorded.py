@@ -1,5 +1,5 @@
-"""What a live run said, kept for what is written at its end: the newest as bytes, and the rest as
-its journal has it."""
+"""A live run's messages, kept for its results: the newest in memory as bytes, the rest in the
+journal."""
 
 import math
 from collections import deque
@@ -14,44 +14,44 @@ from runtime.moved_facts import Moves, step
 Told = TypeVar("Told", bound=Body | Posture)
 
 MOST_KEPT: Final = 9_000
-"""Ten minutes at 15 frames a second. A body takes 3 kB so, and five times as much as an object;
-what is older is in the journal."""
+"""Messages in memory: ten minutes at 15 Hz. A body takes 3 kB as bytes, and five times as much
+as an object."""
 
 
 class MessageLog(Generic[Said]):
-    """The newest messages of one kind; the oldest give way, counted."""
+    """The newest messages of one kind; the oldest are dropped, counted."""
 
     def __init__(self, kind: type[Said], most: int = MOST_KEPT) -> None:
-        """None yet; at most so many."""
+        """Empty; at most this many."""
         self.let_go = 0
-        """How many gave way."""
+        """Number dropped."""
         self._kind = kind
         self._packed: deque[bytes] = deque(maxlen=most)
 
     def add(self, messages: Iterable[Said]) -> None:
-        """Keep these too."""
+        """Add messages."""
         for message in messages:
             self.let_go += len(self._packed) == self._packed.maxlen
             self._packed.append(encode(message))
 
     def __iter__(self) -> Iterator[Said]:
-        """What is kept, oldest first."""
+        """The kept messages, oldest first."""
         return (decode(packed, self._kind) for packed in self._packed)
 
     def newest(self, wanted: Callable[[Said], bool], most: int = MOST_KEPT) -> list[Said]:
-        """The newest ones that are wanted, oldest first, up to the first that is not."""
+        """The newest ones up to the first unwanted one, oldest first."""
         messages = (decode(packed, self._kind) for packed in islice(reversed(self._packed), most))
         return list(takewhile(wanted, messages))[::-1]
 
 
 class WholeRun(Generic[Told]):
-    """All that was said of one kind: what gave way in memory is read from the journal, each time
-    that it is gone through."""
+    """All messages of one kind: those dropped from memory are read from the journal, at each
+    iteration."""
 
     def __init__(
         self, newest: MessageLog[Told], written: Iterable[Told], since_s: float = -math.inf
     ) -> None:
-        """Of what memory holds and of what the journal does, captured since then."""
+        """Captured since a time, from memory and from the journal."""
         self._newest, self._written, self._since_s = newest, written, since_s
 
     def __iter__(self) -> Iterator[Told]:
@@ -67,22 +67,22 @@ class WholeRun(Generic[Told]):
 
 
 class SoFar:
-    """What a summary tells of bodies and postures, kept as they come."""
+    """Facts of bodies and postures for the summary, updated as they come."""
 
     def __init__(self, bodies: Iterable[Body] = (), postures: Iterable[Posture] = ()) -> None:
-        """Of these, and of what comes."""
+        """From these bodies, and from later ones."""
         self.moves: Moves = ()
-        """Of cameras."""
+        """By camera name."""
         self.posture = ""
-        """Of a whole clip: the last name given, by a window that saw most of it."""
+        """For a whole clip: the last name given, by a window that saw most of it."""
         self.instants = 0
-        """How many bodies came."""
+        """Number of bodies."""
         self.with_somebody = 0
-        """... of them those of instants that show somebody."""
+        """... and of those in instants with a person."""
         self.take(bodies, postures)
 
     def take(self, bodies: Iterable[Body], postures: Iterable[Posture]) -> None:
-        """These too."""
+        """Add bodies."""
         for body in bodies:
             self.moves = step(self.moves, body)
             self.instants += 1

@@ -1,4 +1,4 @@
-"""What the summary of a live run tells."""
+"""The summary of a live run."""
 
 import msgspec
 
@@ -13,13 +13,13 @@ from runtime.store.runs import NOBODY_SEEN
 
 
 def facts_of(heard: Heard, clip: Clip, seconds: float, so_far: SoFar) -> Facts:
-    """What the summary tells of a run, so far.
+    """The summary of a run so far.
 
     Args:
-        heard: What its parts said.
-        clip: What they looked at.
-        seconds: For how long.
-        so_far: Of the bodies and postures that the summary is of: all, or those of a part.
+        heard: The messages of its parts.
+        clip: The run's clip.
+        seconds: Duration.
+        so_far: Facts of the bodies and postures: all, or those of a part.
     """
     source = heard.cameras[-1].scale_source if heard.cameras else None
     warnings = [*clip.warnings, *warnings_of(heard.pulses), *heard.notes]
@@ -43,7 +43,7 @@ def facts_of(heard: Heard, clip: Clip, seconds: float, so_far: SoFar) -> Facts:
 
 
 def note_lost(heard: Heard) -> None:
-    """Say how many of the first frames of a very long run are in no file."""
+    """Warn how many of the first frames of a very long run are in no file."""
     given_up = 0 if heard.journal is None else heard.journal.let_go
     lost = min(given_up, heard.bodies.let_go)
     if lost:
@@ -54,13 +54,13 @@ def note_lost(heard: Heard) -> None:
 
 
 def note_unseen(heard: Heard) -> None:
-    """Say so where frames came, and none of them shows anybody."""
+    """Warn where frames came, and none of them shows a person."""
     if heard.so_far.instants and not heard.so_far.with_somebody:
         heard.notes.append(NOBODY_SEEN)
 
 
 def facts_of_clip(clip: Clip) -> Facts:
-    """Of what the run is, and who performs what, as the clip says itself."""
+    """The run's identity, and the clip's own data about performer and posture."""
     return {
         **clip_summary(clip),
         **run_of("live", [view.source for view in clip.views]).facts,
@@ -68,7 +68,7 @@ def facts_of_clip(clip: Clip) -> Facts:
 
 
 def _calibration(heard: Heard) -> Facts:
-    """The rig that the person told, in the form of a calibration.json."""
+    """The rig found by the person, in the form of a calibration.json."""
     told = heard.cameras[-1] if heard.cameras else None
     if told is None or told.scale_source != "person":
         return {}

@@ -1,4 +1,4 @@
-"""The folder of a live run as it begins: its log, its journal, and what one cut short left."""
+"""The folder of a new live run: its log, its journal, and the remains of an interrupted run."""
 
 import shutil
 import time
@@ -16,12 +16,12 @@ from runtime.store.past_journal import LOG, put_aside
 from runtime.store.recording import torn_recordings
 
 KEPT: Final = ".kept-"
-"""Begins the name of the folder in which processes leave what their next start takes up."""
+"""Prefix of the folder in which processes leave their state for a restart."""
 
 
 def new_log(out: Path) -> Path:
-    """The log of this run alone: of a run before it in the same folder it is overwritten, unless
-    that was cut short, and is to be put aside.
+    """The log of this run alone: an earlier run's log is overwritten, unless that run was
+    interrupted and will be moved aside.
 
     Raises:
         LiveRefused: When the folder cannot be written.
@@ -30,7 +30,7 @@ def new_log(out: Path) -> Path:
     try:
         out.mkdir(parents=True, exist_ok=True)
         path.open("a" if has_journal(out) else "w").close()
-        for left in out.glob(f"{KEPT}*"):  # by a run that was cut short
+        for left in out.glob(f"{KEPT}*"):  # of an interrupted run
             shutil.rmtree(left, ignore_errors=True)
     except OSError as error:
         raise LiveRefused(f"cannot write {out}: {error.strerror}; name another --out") from error
@@ -38,16 +38,16 @@ def new_log(out: Path) -> Path:
 
 
 def new_journal(out: Path, clip: Clip, settings: Settings, notes: list[str]) -> Journal:
-    """What takes each body as it comes; the journal of a run that was cut short is put aside.
+    """A writer of bodies as they come; the journal of an interrupted run is moved aside.
 
     Args:
         out: The run's folder.
-        clip: What it follows.
-        settings: Of the run.
-        notes: Is told what was put aside.
+        clip: The run's clip.
+        settings: The run's settings.
+        notes: Receives a note about what was moved.
 
     Raises:
-        LiveRefused: When it cannot be put aside.
+        LiveRefused: When it cannot be moved aside.
     """
     aside = out / SAVED / f"cut_short_{time.strftime('%Y%m%d_%H%M%S')}"
     try:

@@ -1,4 +1,4 @@
-"""What a person sees of a live run: the table of processes, the page's address, news."""
+"""The terminal display of a live run: the table of processes, the page's address, news."""
 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
@@ -16,12 +16,12 @@ from runtime.terminal import warn
 
 
 class Screen:
-    """What a person sees of a run: the table of processes, and each piece of news once."""
+    """The display of a run: the table of processes, and each piece of news once."""
 
     def __init__(
         self, clip: Clip, settings: Settings, console: Console, address: Callable[[], str]
     ) -> None:
-        """Of a run; `address` is that of its page, "" until it answers."""
+        """The run's display; `address` is that of its page, "" until it answers."""
         rate_hz = clip.views[0].fps / clip.every
         self._title = f"{clip.name}: {settings.mode} mode, {rate_hz:g} frames a second"
         self._console = console
@@ -32,7 +32,8 @@ class Screen:
 
     @contextmanager
     def shown(self, names: list[str]) -> Iterator[Callable[[Heard], None]]:
-        """A function that shows the newest pulses and news; the last stay when it is over."""
+        """A function that shows the newest pulses and news; the last ones stay when the run is
+        over."""
         table = table_of(names, {}, self._title)
         with LiveDisplay(
             table, console=self._console, refresh_per_second=4, transient=True
@@ -48,7 +49,7 @@ class Screen:
         self._console.print(table)
 
     def tell_page(self) -> None:
-        """Say where the page is, once it is there."""
+        """Print the page's address once it answers."""
         if "page" not in self._told and (address := self._address()):
             self._told.add("page")
             text = f"the page: [link]{escape(address)}[/link]"
@@ -70,7 +71,7 @@ class Screen:
 
 
 def warnings_of(pulses: Mapping[str, Pulse]) -> list[str]:
-    """What the viewers and the integrator find odd: their pulses tell all of it, a line each."""
+    """Warnings of viewers and integrator: their pulses hold all of them, one line each."""
     return [
         line
         for name, pulse in sorted(pulses.items())

@@ -36,9 +36,9 @@ from runtime.store.runs import write_postures, write_run
 
 PLAYS: Final = "the run is over; the page plays it as long as it is open (Ctrl-C ends)"
 WARMED: Final = f"{warming.__name__}.warmed"
-"""What a run's launcher loads."""
+"""The module that a run's launcher loads."""
 THREAD: Final = "%(threadName)s"
-"""What the log calls a part that is a thread."""
+"""The name in the log of a part that is a thread."""
 
 
 def live(
@@ -52,25 +52,25 @@ def live(
 ) -> Facts:
     """Run the processes on a clip or on cameras until it ends or Ctrl-C; write the run folder.
 
-    SIGTERM ends it too, and SIGHUP, which a terminal says that is closed.
+    SIGTERM ends it too, and so does SIGHUP, which a closed terminal sends.
 
     Args:
-        settings: Of the run.
+        settings: The run's settings.
         out: The run folder; nothing is written elsewhere.
         console: Shows the live table, each warning once, and the page's address.
-        name: Of the run; the clip's when empty.
-        record: Keep what the viewers report, so that it can be replayed.
-        tell: Called ten times a second too, with what was heard so far; True ends the run.
-        together: All parts but the page are threads of this process, which logs as one.
+        name: Name of the run; the clip's where empty.
+        record: Keep the viewers' reports for a replay.
+        tell: Also called ten times a second, with the messages so far; True ends the run.
+        together: All parts but the page are threads of this process, with one log.
 
     Returns:
-        What the run's summary tells.
+        The run's summary.
 
     Raises:
-        ClipError, ModelError, PageError, PortHeld, SettingsError, LiveRefused: When something
-            cannot be worked with; no process was started.
-        PartFailed, BusError, RunError: When something failed; what was tracked until then is
-            written first.
+        ClipError, ModelError, PageError, PortHeld, SettingsError, LiveRefused: When an input is
+            unusable; no process was started.
+        PartFailed, BusError, RunError: When something failed; the results until then are written
+            first.
     """
     settings = admitted(settings, record, console)
     new = not out.exists()
@@ -110,7 +110,7 @@ def live(
 
 
 class _Prepared(NamedTuple):
-    """All that a run is of, before its processes start."""
+    """Everything that a run needs, before its processes start."""
 
     settings: Settings
     clip: Clip
@@ -154,7 +154,7 @@ def _follow(
 def _kept(
     out: Path, clip: Clip, settings: Settings, record: bool
 ) -> AbstractContextManager[Keep | None]:
-    """What takes each message of a run that is recorded."""
+    """A writer of every message of a recorded run."""
     if not record:
         return nullcontext()
     from integrator.live_rig.live_calibration import is_by_person
@@ -165,13 +165,13 @@ def _kept(
 
 
 def _counts(out: Path) -> dict[str, int]:
-    """How many frames were written, and how many with a pose: the page may have shown fewer."""
+    """Number of frames written, and of those with a pose: the page may have shown fewer."""
     summary = json.loads((out / "summary.json").read_text())
     return {name: summary[name] for name in ("frames", "frames_with_pose")}
 
 
 def _show_end(desk: PageDesk, facts: Facts, stop: threading.Event, console: Console) -> None:
-    """Let the page play the run for who looks at it, unless Ctrl-C ended all."""
+    """Let the page play the run while a browser shows it, unless Ctrl-C ended all."""
     if desk.stopped:
         stop.clear()
     if not stop.is_set():
@@ -179,7 +179,7 @@ def _show_end(desk: PageDesk, facts: Facts, stop: threading.Event, console: Cons
 
 
 def _opened_or_nothing(settings: Settings, name: str, out: Path, *, new: bool) -> Clip:
-    """The clip of a run; where it is refused, a folder that was made for the run goes again."""
+    """The clip of a run; where it is refused, a folder created for the run is removed."""
     try:
         return opened(settings, name)
     except BaseException:
@@ -193,7 +193,7 @@ def _stopped_by_signals(console: Console) -> Iterator[threading.Event]:
     stop = threading.Event()
 
     def end(number: int, _frame: FrameType | None) -> None:
-        console.quiet |= number == HANG_UP  # each word to a closed terminal would fail
+        console.quiet |= number == HANG_UP  # writing to a closed terminal would fail
         stop.set()
 
     heeded = [signal.SIGINT]

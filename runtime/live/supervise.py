@@ -1,4 +1,4 @@
-"""One process of a run under supervision: what dies is started again, later each time."""
+"""Supervision of one process of a run: after a crash it is restarted, later each time."""
 
 import signal
 import time
@@ -15,21 +15,21 @@ from runtime.faults import FAULTY, Fault
 from runtime.live.process_table import Part, end, last_words, started
 
 TRIES: Final = 5
-"""How often a part is started again before it is given up."""
+"""Number of restarts of a part before it is given up."""
 BACK_OFF_S: Final = 0.5
-"""Before the first new start; twice as long before each further one."""
+"""Delay before the first restart, seconds; each further one waits twice as long."""
 STEADY_S: Final = 60.0
-"""A part that ran for so long has all its tries again."""
+"""Running time, seconds, after which a part has all its restarts again."""
 LOOK_AT_MOST_S: Final = 0.5
-"""What counts of the time between two looks: a supervisor that was stopped itself, with all of
-its group, must not take the others for hung."""
+"""Upper bound of the counted time between two checks: after the supervisor itself was stopped,
+with its whole group, the others must not count as hung."""
 
 LATELY_S: Final = 2.5
-"""Who has said nothing for so long may be unable to hand on what others say."""
+"""Silence, seconds, after which a part may be unable to forward messages."""
 
 
 class PartFailed(RuntimeError):
-    """A process of the run failed; the text names it and says why."""
+    """A process of the run failed; the text names it and the cause."""
 
 
 class PartBroke(PartFailed, Fault):
@@ -37,21 +37,21 @@ class PartBroke(PartFailed, Fault):
 
 
 class Watched:
-    """A part and its process, which may be another one later."""
+    """A part and its process, which changes with a restart."""
 
     def __init__(self, part: Part) -> None:
         """Started now."""
         self.part = part
         self.given_up = ""
-        """Why it is not started again; "" while it is."""
+        """Why it is not restarted; "" while it may be."""
         self.running = started(part)
         self._tries = 0
         self._asked = False
-        """It was told to end."""
+        """It was asked to end."""
         self._came_up = False
-        """It has worked once: what fails of itself before that fails for good."""
+        """It has worked once: an error before that is final."""
         self._cut_off = False
-        """It did not end when it was asked to, and was killed."""
+        """It did not end when asked to, and was killed."""
         self._alive_s, self._quiet_s = 0.0, 0.0
         self._looked_s = time.monotonic()
         self._again_s: float | None = None
@@ -59,24 +59,24 @@ class Watched:
 
     @property
     def done(self) -> bool:
-        """Whether it came to its own end."""
+        """Whether it ended normally."""
         return self._again_s is None and self.running.process.exitcode == 0
 
     @property
     def speaks(self) -> bool:
-        """Whether it has said something lately, as who hands on what others say must."""
+        """Whether it has sent something recently, as a forwarding part must."""
         return self._again_s is None and self._quiet_s <= LATELY_S
 
     def look(self, now_s: float, pulses: dict[str, Pulse], reached: bool = True) -> str:
-        """Start it again where it died or hangs; what is to be told of that, or "".
+        """Restart it where it crashed or hangs; the line to report, or "".
 
         Args:
             now_s: This host's monotonic clock.
-            pulses: The newest of each part; a part that is down is told there too.
-            reached: Whether what it says gets here: nobody is held to what cannot be heard.
+            pulses: The newest pulse of each part; a stopped part's is added.
+            reached: Whether its messages arrive here: silence counts only then.
 
         Raises:
-            PartFailed: When it fails of itself before it ever worked.
+            PartFailed: When its own error ends it before it ever worked.
         """
         since_s = min(now_s - self._looked_s, LOOK_AT_MOST_S)
         self._looked_s = now_s
@@ -94,9 +94,10 @@ class Watched:
         return self._hung()
 
     def refuse_failure(self) -> None:
-        """Say why it failed, if it did.
+        """Raise the error that ended it, if any.
 
-        Who was asked to end and had no ears for it yet did not, nor who took too long to end.
+        A part that was asked to end before it could receive that, or that took too long, is no
+        failure.
 
         Raises:
             PartFailed: When its process ended with an error, or it was given up.
@@ -113,7 +114,7 @@ class Watched:
             self.running.process.terminate()
 
     def end(self) -> str:
-        """End its process and start no other; what is to be told of that, or ""."""
+        """End its process for good; the line to report, or ""."""
         self.ask()
         self._cut_off |= not end(self.running)
         late = f"{self.part.name}: it did not end when asked to, and was killed"
@@ -150,12 +151,12 @@ class Watched:
         return kind(f"{self.part.name}: {why}")
 
     def _show(self, state: Literal["restarting", "given up"], pulses: dict[str, Pulse]) -> None:
-        """Let the table of processes say how it is, with its counts so far."""
+        """Show its state in the table of processes, with its counts so far."""
         last = pulses.get(self.part.name) or Pulse(process=self.part.name, state=state)
         pulses[self.part.name] = msgspec.structs.replace(last, state=state)
 
     def _hung(self) -> str:
-        """Kill it where it should speak and does not; the next look finds it dead."""
+        """Kill it where it is silent without reason; the next check finds it dead."""
         last = self._last
         expected = self.part.beats and last is not None and last.state == "running"
         if not expected or not silent(TOPICS[Pulse].hz, 0.0, self._quiet_s):
@@ -167,7 +168,7 @@ class Watched:
 
 @contextmanager
 def watched(part: Part) -> Iterator[Watched]:
-    """A part, started; ended whatever happens."""
+    """A started part; it is ended whatever happens."""
     one = Watched(part)
     try:
         yield one

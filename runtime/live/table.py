@@ -29,7 +29,7 @@ COLOURS: Final = {
 
 
 def table_of(names: Sequence[str], pulses: Mapping[str, Pulse], title: str) -> Table:
-    """How every process is doing; one that was not heard yet is starting.
+    """The state of every process; one without a message yet is starting.
 
     Latency is from a frame's capture to the end of the process's work on it. `missed` counts
     deadlines: work that ended more than a frame later.
@@ -60,7 +60,7 @@ def _cells(name: str, pulse: Pulse | None) -> list[str]:
 
 
 def table_of_rows(rows: Sequence[Mapping[str, object]]) -> Table:
-    """A table with a line for each of several things alike; its columns are their names."""
+    """A table with a line for each of several like items; its columns are their field names."""
     table = Table(box=SIMPLE_HEAD)
     for column in rows[0] if rows else ():
         table.add_column(column.replace("_", " "), justify="left" if column == "name" else "right")
@@ -70,7 +70,7 @@ def table_of_rows(rows: Sequence[Mapping[str, object]]) -> Table:
 
 
 def _shown(value: object) -> str:
-    """A value to two decimals, none of them -0.00; of several, one after the other."""
+    """A value to two decimals, never -0.00; several are joined."""
     if isinstance(value, list | tuple):
         return " ".join(_shown(each) for each in value)
     return f"{round(value, 2) + 0.0:.2f}" if isinstance(value, float) else str(value)

@@ -1,6 +1,6 @@
-"""Parts of a run that are threads of one process: a room takes half the memory so.
+"""Parts of a run as threads of one process, which halves a room's memory.
 
-What breaks the process ends all of the room; who serves it starts it again.
+A crash of the process ends the whole room; the service restarts it.
 """
 
 import logging
@@ -14,25 +14,25 @@ from common.bus.process import ProcessContext
 from runtime.faults import code_of, told
 
 KILLED: Final = 70
-"""Exit code of a process of which a thread hangs: no thread can be killed alone."""
+"""Exit code of a process with a hung thread: a thread cannot be killed alone."""
 
 
 class ThreadWorker:
-    """A part in a thread; to its supervisor what a process of its own would be."""
+    """A part in a thread, with the interface of a process for its supervisor."""
 
     def __init__(
         self, name: str, main: Callable[..., None], arguments: tuple[Any, ...], words: Connection
     ) -> None:
-        """Begun now.
+        """Started now.
 
         Args:
-            name: Of the part.
-            main: What it does.
-            arguments: Its context among them is told how this part is ended.
-            words: On which it says why it fails.
+            name: Name of the part.
+            main: Its function.
+            arguments: They include its context, which gets the part's stop event.
+            words: Connection on which it reports its error.
         """
         self.exitcode: int | None = None
-        """None while it works."""
+        """None while it runs."""
         self.pid = os.getpid()
         self._stop = threading.Event()
         own = tuple(
@@ -51,11 +51,11 @@ class ThreadWorker:
         self._thread.start()
 
     def is_alive(self) -> bool:
-        """Whether it works."""
+        """Whether it runs."""
         return self._thread.is_alive()
 
     def join(self, timeout: float | None = None) -> None:
-        """Wait for its end, or so many seconds."""
+        """Wait for its end, or that many seconds."""
         self._thread.join(timeout)
 
     def terminate(self) -> None:
@@ -63,13 +63,13 @@ class ThreadWorker:
         self._stop.set()
 
     def kill(self) -> None:
-        """End it, and all of its process: what was measured is in the run's journal."""
+        """End it, with its whole process: the measurements are in the run's journal."""
         if self.is_alive():
             os._exit(KILLED)
 
 
 def confessed(name: str, error: Exception, words: Connection) -> int:
-    """Say in one line, not in a traceback, what a part cannot do; the exit code of that."""
+    """Report a part's error in one line, not in a traceback; the exit code."""
     logging.getLogger(name).debug("failed", exc_info=error)
     words.send(told(error))
     return code_of(error)

@@ -1,1 +1,1 @@
-"""The same steps in one process, in lock-step."""
+"""The steps in lock-step, in one process."""

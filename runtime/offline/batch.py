@@ -1,4 +1,4 @@
-"""Clip after clip tracked in lock-step, a run folder for each."""
+"""Clip after clip tracked in lock-step, with a run folder for each."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -31,46 +31,46 @@ from runtime.unfinished.unfinished_run import CannotResume
 from runtime.unfinished.work import Course, Kept
 
 KEPT_AS_IT_IS: Final = (CannotResume, OtherRun)
-"""What keeps one clip's run folder from being written."""
+"""An error that keeps one clip's run folder from being written."""
 
 
 class Asked(NamedTuple):
-    """What the user says of all clips; None leaves what their settings say."""
+    """The user's options for all clips; None leaves their settings."""
 
     mode: Mode | None = None
     size: str | None = None
     landmarks: str | None = None
-    """Where joints of the pictures come from."""
+    """Source of the landmarks."""
     views: tuple[ViewerNumber, ...] | None = None
-    """The cameras to use; None: all that a clip has."""
+    """The cameras to use; None: all of a clip."""
     trusted: bool = False
-    """A calibration is trusted even where it seems wrong."""
+    """Trust a calibration even where it seems wrong."""
     record: bool = False
-    """Keep what the viewers report, so that it can be replayed."""
+    """Keep the viewers' reports for a replay."""
     resume: bool = False
-    """Go on with what was cut short, and leave out what is done."""
+    """Resume interrupted runs, and skip complete ones."""
     force: bool = False
-    """Write over the runs of other clips."""
+    """Overwrite runs of other clips."""
     offset_s: float | None = None
-    """How late camera 2 is."""
+    """Delay of camera 2."""
 
 
 def track_all(paths: Sequence[Path], out: Path, given: Asked, console: Console) -> Facts:
     """Track clip after clip and write a run folder for each.
 
-    Of several, one that cannot be used is said and left out; the others are tracked.
+    With several clips, an unusable one is reported and skipped.
 
     Args:
-        paths: Clip folders and settings files; other plain files are said and left out.
+        paths: Clip folders and settings files; other plain files are reported and skipped.
         out: Gets a folder for each, named after the clip or the settings file.
-        given: What the user says of all of them.
-        console: For progress, warnings and errors.
+        given: The user's options for all of them.
+        console: Shows progress, warnings and errors.
 
     Raises:
         SettingsError, ClipError, DecoderDied, Undecodable, CannotResume: When the only clip cannot
             be used.
-        ClipsFailed: When there is nothing to track, when two runs would have one folder, and at
-            the end when any clip could not be used.
+        ClipsFailed: When there is nothing to track, when two runs would have one folder, and at the
+            end when any clip could not be used.
         RunError: When a run folder cannot be written.
     """
     runs = run_names(without_plain_files(paths, console))
@@ -104,7 +104,7 @@ def track_all(paths: Sequence[Path], out: Path, given: Asked, console: Console) 
 def _tracked(
     wanted: Wanted, given: Asked, decoders: Decoders, tell: Tell, console: Console
 ) -> Facts:
-    """Track a clip and write its run; what the summary tells of it."""
+    """Track a clip and write its run; returns its summary."""
     folder, settings = wanted.folder, wanted.settings
     with resumable(wanted, console) as (work, made_of):
         heard = work.messages("heard") if given.record else None
@@ -133,13 +133,13 @@ def head_of(
     *,
     by_person: bool = False,
 ) -> Head:
-    """What a recording of a clip begins with.
+    """The header of a clip's recording.
 
     Args:
         clip: With the rig that is known before the first frame.
-        settings: Of the run.
-        scale_source: Where that rig is from; None: it is calibrated, if there is one.
-        by_person: The person tells the rig while the run goes on.
+        settings: The run's settings.
+        scale_source: Source of that rig; None: it is calibrated, if there is one.
+        by_person: The rig comes from the person during the run.
     """
     return Head(
         name=clip.name,
@@ -156,7 +156,7 @@ def head_of(
 
 
 def _recorder(heard: Kept) -> Watch:
-    """Gathers what is said of every instant, in the order in which it is said."""
+    """Writes the messages of every instant, in the order in which a live run sends them."""
 
     def each(_frames: object, reports: dict[int, View], body: Body) -> None:
         for message in (*reports.values(), body):

@@ -1,4 +1,4 @@
-"""Films of a printed board, looked through for its corners."""
+"""Videos of a printed board, searched for its corners."""
 
 from collections.abc import Sequence
 from typing import Final, NamedTuple
@@ -16,35 +16,36 @@ from common.video.pictures import Decoded, Image, Size, VideoInfo, Wanted
 from runtime.terminal import Tell, by_share
 
 LOOKS_HZ: Final = 5.0
-"""How many pictures of a second are looked at."""
+"""Number of examined pictures per second."""
 USUAL_HZ: Final = 30.0
-"""Of a film that tells no rate."""
+"""Frame rate of a video that reports none."""
 WIDEST_PX: Final = 1920
-"""Wider pictures are reduced: corners are no better known in them, and take long to find."""
+"""Width to which wider pictures are reduced, pixels: larger ones give no better corners, and
+take long."""
 
 
 class Looked(NamedTuple):
-    """What was found in a film."""
+    """The corners found in a video."""
 
     film: Film
     board: Board
     picture: Image
-    """Its first."""
+    """Its first picture."""
 
 
 def looked_through(
     videos: Sequence[str], boards: Sequence[Board], progress: Progress
 ) -> list[Looked]:
-    """The films of a board, one a camera.
+    """The videos of a board, one per camera.
 
     Args:
         videos: Their files.
-        boards: One of these is shown.
-        progress: Of the work.
+        boards: Candidates for the board in them.
+        progress: Receives the progress.
 
     Raises:
-        CalibrationError: When one shows no board, or another than the first, or has pictures of
-            another size.
+        CalibrationError: When one shows no board, or another board than the first, or has pictures
+            of another size.
         Undecodable, DecoderDied: When one cannot be read.
     """
     found: list[Looked] = []

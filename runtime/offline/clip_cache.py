@@ -1,4 +1,4 @@
-"""What tracking made of clips, kept on disk: no clip is tracked twice in the same way."""
+"""Tracking results of clips, cached on disk: no clip is tracked twice in the same way."""
 
 import hashlib
 import io
@@ -23,11 +23,11 @@ KEPT: Final = (
     *("frame", "time_s", "angles_deg", "joints_m"),
     *("joints_px", "confidence", "status"),
 )
-"""Arrays of `poses.npz` that recognisers and pictures are made of."""
+"""Arrays of `poses.npz` for recognisers and pictures."""
 
 
 class CachedRun(NamedTuple):
-    """As much of a run as recognition needs."""
+    """The part of a run that recognition needs."""
 
     facts: Facts
     """clip, performer, posture_meant, warnings, as in `summary.json`."""
@@ -36,7 +36,7 @@ class CachedRun(NamedTuple):
 
 
 def key_of(settings: Settings, tracker: str) -> str:
-    """A word for a clip tracked in one way: another if any file of it or any setting differs.
+    """A key for a clip tracked in one way: it changes with any file of it and any setting.
 
     Raises:
         ClipError: When a file is missing, or the settings name a camera.
@@ -54,7 +54,7 @@ def key_of(settings: Settings, tracker: str) -> str:
 
 
 def packed(tracked: Tracked) -> bytes:
-    """What is kept of a tracked clip, as an npz without pickle."""
+    """A tracked clip's cached part, as an npz without pickle."""
     arrays = poses(tracked.bodies)
     facts = json.dumps(tracked.facts).encode()
     file = io.BytesIO()
@@ -68,7 +68,7 @@ def packed(tracked: Tracked) -> bytes:
 
 
 def write(folder: Path, key: str, content: bytes) -> None:
-    """Keep what `packed` gave; a file is there whole or not at all.
+    """Store the result of `packed`; the file is complete or absent.
 
     Raises:
         OSError: When it cannot be written.
@@ -79,7 +79,7 @@ def write(folder: Path, key: str, content: bytes) -> None:
 
 
 def read(folder: Path, key: str) -> CachedRun | None:
-    """What was kept under a key; None where nothing was, or something that is damaged."""
+    """The result stored under a key; None where there is none, or a damaged one."""
     try:
         held = read_arrays(folder / f"{key}.npz", MAX_BYTES)
         facts = json.loads(held["facts"].tobytes())

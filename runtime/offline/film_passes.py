@@ -1,7 +1,7 @@
-"""The two passes over one camera's film: its silhouettes, then its bodies.
+"""The two passes over one camera's video: its silhouettes, then its bodies.
 
-What the thesis learns from all of a film, the background (3.1.2) and the scale (3.1.5), is known
-before the first body; from there on the steps are those of a live run.
+The thesis learns the background (3.1.2) and the scale (3.1.5) from the whole video, before the
+first body; after that the steps are those of a live run.
 """
 
 import time
@@ -44,29 +44,29 @@ from viewer.room.background_source import FilmBackground
 from viewer.stick.standing_height import standing_of, standing_rows
 
 CUTTING, POSING = "silhouettes", "poses"
-"""The passes, by the names under which they are resumed."""
+"""Names of the passes, for resuming."""
 REPORTS, CALM = "reports", "calm"
 MOST_COVERED: Final = 0.5
-"""Share of the picture that no person covers in most frames; a camera that moves does."""
+"""Smallest share of the picture without a person in most frames; a moving camera gives less."""
 
 
 class FilmFacts(NamedTuple):
-    """What both passes need to know of a film."""
+    """Inputs of both passes."""
 
     settings: Settings
     method: Method
-    """What is done beyond the print."""
+    """The departures from the print."""
     number: ViewerNumber
     period_s: float
     camera: Camera | None
-    """Calibrated, at the working size; None: one is assumed."""
+    """Calibrated, at the working size; None: a camera is assumed."""
     notes: Notes = Notes()
     scale: float = 1.0
-    """Pixels of the working picture in one of the video."""
+    """Pixels of the working picture per pixel of the video."""
 
 
 class Cutting(NamedTuple):
-    """Where the first pass is."""
+    """Progress of the first pass."""
 
     viewer: track.State
     start: int = 0
@@ -75,34 +75,34 @@ class Cutting(NamedTuple):
 
 
 class FirstPass(NamedTuple):
-    """What the first pass tells of itself."""
+    """Results of the first pass."""
 
     odd: tuple[str, ...] = ()
-    """What was odd about the film."""
+    """Warnings about the video."""
     spent_s: float = 0.0
     ending: Ending = Ending()
     """How far it could be read."""
 
 
 class Lifted(NamedTuple):
-    """What the second pass gives."""
+    """Results of the second pass."""
 
     bodies: Sequence[Body]
     camera: Camera | None
-    """By which they are lifted; None where there is no frame."""
+    """The camera by which bodies are lifted; None without frames."""
 
 
 class Stand(NamedTuple):
-    """How somebody stood in a frame."""
+    """A silhouette of a frame, reduced to its rows."""
 
     rows: tuple[float, float]
-    """As `standing_rows` tells it."""
+    """From `standing_rows`."""
     whole: bool
     upright: bool
 
 
 class Posing(NamedTuple):
-    """Where the second pass is."""
+    """Progress of the second pass."""
 
     viewer: track.State
     integrator: State
@@ -119,11 +119,11 @@ def silhouettes_of(
     source: OutsideSource | None = None,
     course: Course = Course(),
 ) -> Sequence[View]:
-    """The first pass: the silhouette and the landmarks of every frame, from where it was left.
+    """The first pass: silhouette and landmarks of every frame, from where it was interrupted.
 
     Raises:
-        ClipError: When its camera moves.
-        DecoderDied: When the video broke the decoder.
+        ClipError: When the camera moves.
+        DecoderDied: When the video crashed the decoder.
     """
     view, work, began = clip.views[0], course.work, time.perf_counter()
     at = work.resumed(CUTTING, Cutting) or Cutting(
@@ -147,13 +147,13 @@ def bodies_of(
     course: Course = Course(),
     first: FirstPass = FirstPass(),
 ) -> Lifted:
-    """The second pass: the viewer tells more of each silhouette, the integrator lifts it.
+    """The second pass: the viewer measures each silhouette, the integrator lifts it.
 
     Args:
-        reports: What the first pass gave.
-        film: Of the film.
-        course: Is told how far it is, and keeps the bodies.
-        first: Is kept with where it was left.
+        reports: Results of the first pass.
+        film: Inputs of both passes.
+        course: Receives the progress, and stores the bodies.
+        first: Stored with the progress.
     """
     work, began = course.work, time.perf_counter()
     bodies = work.messages(BODIES)
@@ -187,7 +187,7 @@ def _posed(at: Posing, report: View, film: FilmFacts) -> tuple[Posing, Body]:
 
 
 def _begun(reports: Sequence[View], film: FilmFacts) -> tuple[track.State, State]:
-    """A viewer and an integrator that know what the first pass tells of the scale (T20)."""
+    """A viewer and an integrator that know the first pass's scale (T20)."""
     settings, camera = film.settings, film.camera
     size = (reports[0].width, reports[0].height)
     stands = [_stand_of(report.person) for report in reports if report.person is not None]
@@ -209,15 +209,15 @@ def _begun(reports: Sequence[View], film: FilmFacts) -> tuple[track.State, State
 
 
 def _stand_of(person: Observation) -> Stand:
-    """A film's reports are many: each is let go of again."""
+    """A video has many reports: each is released after use."""
     shown = person.landmarks
     upright = shown is not None and is_upright(shown)
     return Stand(standing_rows(unpack(person)), not person.cut, upright)
 
 
 def _sights(stands: Sequence[Stand], size: tuple[int, int]) -> NDArray[np.float64]:
-    """Rows of those silhouettes by which a camera is told, (n, 2): the whole ones of somebody
-    upright, or whatever there is."""
+    """Rows of the silhouettes that determine a camera, (n, 2): whole ones of an upright person,
+    or else all."""
     whole = [one for one in stands if one.whole] or stands
     upright = [one for one in whole if one.upright] or whole
     return np.array([one.rows for one in upright] or [(0.0, float(size[1]))])
@@ -228,7 +228,7 @@ def _setup(film: FilmFacts) -> track.Setup:
 
 
 def _annotations(film: FilmFacts, report: View) -> Annotations:
-    """What the user says of a frame, in the pixels of its report."""
+    """The user's inputs for a frame, in the pixels of its report."""
     note = held(film.notes, report.frame)
     filed = film.scale * np.array([*note.joints_px.values()]).reshape(-1, 2)
     places = as_worked_on(filed, report.upright).tolist()

@@ -1,4 +1,4 @@
-"""A film's bodies made calm and rigid: what comes after a frame tells of it too."""
+"""A video's bodies, smoothed with later frames too, and with rigid limbs."""
 
 from collections.abc import Iterable, Sequence
 from itertools import groupby
@@ -18,18 +18,18 @@ from integrator.single.rigid_limbs import with_lengths
 from runtime.unfinished.work import Kept
 
 NOISE_M: Final = 0.05
-"""Standard deviation of a joint as one view has it."""
+"""Standard deviation of a joint in a single view."""
 ACCELERATION_M_S2: Final = 40.0
-"""Standard deviation of a joint's acceleration between two frames. Of 20, 30, 40 and 60 joints err
-least with 20 at their own pace and with 60 at twice that; with 40 within 1 % of both: two
+"""Standard deviation of a joint's acceleration between two frames. Of 20, 30, 40 and 60 joints
+err least with 20 at their own pace and with 60 at twice that; with 40 within 1 % of both: two
 performers and six synthetic people in free motion, by `steadied` (docs/measurements.md)."""
 START_SPEED_M_S: Final = 2.0
 """Standard deviation of the speed at the first frame: a limb may be moving already."""
 ROUNDS: Final = 3
-"""So often places are smoothed anew with what is known of who was far off."""
+"""Number of smoothing rounds, each with less weight for outliers."""
 
 Covariance = tuple[Vector, Vector, Vector]
-"""Of a place, of place and speed, of the speed: the same for all axes of a joint, m and s."""
+"""Covariance of place, of place and speed, of speed: the same for all axes of a joint, m and s."""
 
 
 def calmed(
@@ -39,17 +39,18 @@ def calmed(
     kept: Kept | None = None,
     uprights: Uprights = (None, None),
 ) -> Sequence[Body]:
-    """The bodies of a film with smooth joints, whose limbs keep the lengths that are their medians.
+    """The bodies of a video with smooth joints, whose limbs keep their median lengths.
 
-    Where a length is not what was found, depth gives way before the place in the picture.
+    Where a length deviates, depth is changed more than the place in the picture.
 
-    Angles stay as they are: they were smoothed as they came. So do joints that the user placed.
+    Angles are not changed: they were smoothed as they came. Neither are joints that the user
+    placed.
 
     Args:
-        bodies: In the order of time; those without joints part the film into stretches.
-        rig: Of the film's camera, twice.
+        bodies: In the order of time; those without joints separate stretches.
+        rig: The video's camera, twice.
         notes: The user's inputs.
-        kept: Takes what is given; None: a list.
+        kept: Receives the bodies; None: a list.
         uprights: How each view's picture comes from its file's.
     """
     from animator.skeleton.bone_turns import motion_of
@@ -71,10 +72,10 @@ def calmed(
 
 
 def steadied(joints_m: NDArray[np.float64], time_s: Vector) -> NDArray[np.float64]:
-    """Smooth joints over time, those hardly believed that are far from where they would be smooth.
+    """Smooth joints over time; outliers, far from their smooth place, get little weight.
 
-    A joint that jumps to the other side, or to a thing, and back is no noise of the usual size: it
-    would pull its neighbours with it. Least squares, weighed anew by Cauchy's 1 / (1 + r^2 / c^2).
+    A joint that jumps to the other side, or to an object, and back would pull its neighbours with
+    it, as it exceeds the usual noise. Least squares, reweighted by Cauchy's 1 / (1 + r^2 / c^2).
 
     Args:
         joints_m: (n, 15, 3)
@@ -91,15 +92,15 @@ def steadied(joints_m: NDArray[np.float64], time_s: Vector) -> NDArray[np.float6
 def smoothed(
     places_m: NDArray[np.float64], time_s: Vector, variances: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Places over time, of constant velocity but for unknown accelerations.
+    """Smoothed places over time: constant velocity with unknown accelerations.
 
-    A Kalman filter, and then from the end to the beginning the smoother of Rauch, Tung and Striebel
-    (1965), of all places at once: filterpy's, joint by joint, would take 20 times as long.
+    A Kalman filter forwards, then the smoother of Rauch, Tung and Striebel (1965) backwards, for
+    all places at once: filterpy's, joint by joint, would take 20 times as long.
 
     Args:
         places_m: (n, ...)
         time_s: (n,) increasing.
-        variances: (n, ...) m^2 of the places, alike or of length 1 along each axis.
+        variances: (n, ...) m^2 of the places, of their shape or of length 1 along an axis.
     """
     found_m, speed_m_s = places_m.copy(), np.zeros_like(places_m)
     P: Covariance = (variances[0], 0.0 * variances[0], START_SPEED_M_S**2 + 0.0 * variances[0])
@@ -130,7 +131,7 @@ def _ahead(P: Covariance, dt_s: float) -> Covariance:
 
 
 def _gains(P: Covariance, dt_s: float) -> tuple[tuple[Vector, Vector], tuple[Vector, Vector]]:
-    """What a later correction of place and speed tells of the place and of the speed before."""
+    """Gains with which a later correction of place and speed changes the earlier ones."""
     (a, b, c), (A, B, C) = P, _ahead(P, dt_s)
     whole, beside = A * C - B * B, b + dt_s * c
     of_place = (((a + dt_s * b) * C - b * B) / whole, (b * A - (a + dt_s * b) * B) / whole)

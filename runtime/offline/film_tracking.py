@@ -1,4 +1,4 @@
-"""A film of one camera, followed in two passes: its bodies, and what is odd about them (T1)."""
+"""A video of one camera, tracked in two passes: its bodies and warnings (T1)."""
 
 import time
 from collections.abc import Sequence
@@ -35,22 +35,22 @@ from viewer.landmarks.landmark_sources import oddities, outside_sources
 from viewer.room.background_source import FilmBackground
 
 FITS: Final = 0.6
-"""S from which a pose fits its silhouette."""
+"""S from which on a pose fits its silhouette."""
 MOSTLY: Final = 0.5
-"""Where fewer of the poses fit, that is said."""
+"""Share of fitting poses below which there is a warning."""
 
 
 class Followed(NamedTuple):
-    """What one camera gave."""
+    """The result of one camera."""
 
     bodies: Sequence[Body]
     reports: Sequence[View]
     period_s: float
-    """From a frame to the next, where the rate does not vary."""
+    """Time between frames, where the rate is constant."""
     camera: Camera | None
-    """By which they were lifted, calibrated or assumed; None where there is no frame."""
+    """The camera by which bodies were lifted, calibrated or assumed; None without frames."""
     clip: Clip | None
-    """None of a sequence of masks, likewise `background`."""
+    """None for a sequence of masks, likewise `background`."""
     background: Background | None
     facts: Facts
 
@@ -73,7 +73,7 @@ class Followed(NamedTuple):
 
 
 class Film(NamedTuple):
-    """What is followed: a clip of one view, and what is known of it."""
+    """The input: a clip of one view, and what is known of it."""
 
     clip: Clip
     background: FilmBackground
@@ -82,7 +82,7 @@ class Film(NamedTuple):
 
 
 class Heard(NamedTuple):
-    """Who is told which share of each pass is done, and where what it gives is kept."""
+    """Receives the progress of each pass, and stores its results."""
 
     silhouettes: Tell = lambda _: None
     poses: Tell = lambda _: None
@@ -92,11 +92,11 @@ class Heard(NamedTuple):
 def follow_clip(
     film: Film, settings: Settings, method: Method, reader: Reader, heard: Heard = Heard()
 ) -> Followed:
-    """Track a clip of one view whose background is known.
+    """Track a clip of one view with a known background.
 
     Raises:
-        ClipError: When its camera moves.
-        DecoderDied: When the video broke the decoder.
+        ClipError: When the camera moves.
+        DecoderDied: When the video crashed the decoder.
         SettingsError: When the source of landmarks cannot be used.
     """
     clip, background, notes = film
@@ -129,14 +129,14 @@ def follow_clip(
 
 
 def _camera_facts(assumed: Camera | None) -> Facts:
-    """A camera that was assumed, for the summary."""
+    """The assumed camera, for the summary."""
     return {} if assumed is None else {"camera": msgspec.to_builtins(assumed)}
 
 
 def _looked_through(
     film: Film, known: FilmFacts, reader: Reader, heard: Heard
 ) -> tuple[Sequence[View], FirstPass]:
-    """The first pass, and what it tells of itself."""
+    """The first pass, and its results."""
     clip, work, began = film.clip, heard.work, time.perf_counter()
     view, begun = clip.views[0], work.resumed(CUTTING, Cutting)
     with outside_sources(known.settings, clip.views) as sources:
@@ -150,7 +150,7 @@ def _looked_through(
 def follow_masks(
     name: str, reports: list[View], settings: Settings, tell: Tell = lambda _: None
 ) -> Followed:
-    """The same for silhouettes that were cut out before."""
+    """The same for silhouettes from a file."""
     began, least_share = time.perf_counter(), settings.silhouette.min_height_share
     reports = [_or_nobody(report, least_share) for report in reports]
     period_s = reports[1].captured_s - reports[0].captured_s if len(reports) > 1 else 0.04
@@ -167,7 +167,7 @@ def follow_masks(
 
 
 def _or_nobody(report: View, least_share: float) -> View:
-    """A report, or one of no person where its silhouette is lower than a person is."""
+    """A report; without a person where its silhouette is lower than one."""
     person = report.person
     if person is None or person.box.bottom + 1 - person.box.top >= least_share * report.height:
         return report
@@ -175,7 +175,7 @@ def _or_nobody(report: View, least_share: float) -> View:
 
 
 def _times(frames: int, **spent_s: float) -> Facts:
-    """Seconds of each stage, and the rate, for the summary."""
+    """Seconds of each stage, and the frame rate, for the summary."""
     total_s = sum(spent_s.values())
     seconds = {name: round(value, 4) for name, value in spent_s.items()}
     return {
@@ -185,12 +185,12 @@ def _times(frames: int, **spent_s: float) -> Facts:
 
 
 def unseen(bodies: Sequence[Body]) -> str:
-    """What to say where no frame shows anybody; "" otherwise."""
+    """The warning where no frame shows a person; "" otherwise."""
     return "" if any(body.joints_m for body in bodies) else NOBODY_SEEN
 
 
 def doubtful(bodies: Sequence[Body]) -> str:
-    """What is odd where no frame shows anybody, or few poses fit what they show; "" otherwise."""
+    """The warning where no frame shows a person, or few poses fit; "" otherwise."""
     scores = [max(body.score) for body in bodies if body.joints_m]
     if not scores:
         return unseen(bodies)

@@ -16,12 +16,12 @@ from viewer.landmarks.landmark_sources import Sources
 from viewer.room.background_source import Opening, opening_of_view
 
 Readers = Mapping[ViewerNumber, Reader]
-"""What reads each view, by its number."""
+"""The reader of each view, by number."""
 NONE: Final[Mapping[ViewerNumber, int]] = {}
 
 
 class _UntilLeft:
-    """A reader that gives nothing more once nobody waits for what is learnt."""
+    """A reader that stops once its result is not needed any more."""
 
     def __init__(self, reader: Reader, left: threading.Event) -> None:
         self._reader, self._left = reader, left
@@ -35,7 +35,7 @@ class _UntilLeft:
         """As the reader's.
 
         Raises:
-            CancelledError: When nobody waits any more.
+            CancelledError: When the result is not needed any more.
         """
         for decoded in self._reader.frames(source, size, wanted):
             if self._left.is_set():
@@ -44,10 +44,10 @@ class _UntilLeft:
 
 
 def openings(clip: Clip, settings: SilhouetteSettings, readers: Readers) -> list[Opening]:
-    """What is known of every view before its first frame, learnt side by side.
+    """The backgrounds of all views before the first frame, learnt in parallel.
 
-    Mostly it is waiting for the decoders. What ends it, as Ctrl-C does, or a view that cannot be
-    read, does not wait for the other views.
+    Most of the time is spent on decoding. An interruption by Ctrl-C, or an unreadable view, does
+    not wait for the other views.
     """
     left = threading.Event()
 
@@ -63,7 +63,7 @@ def openings(clip: Clip, settings: SilhouetteSettings, readers: Readers) -> list
 
 
 def share_of(clip: Clip, frames: Mapping[ViewerNumber, CapturedFrame]) -> float:
-    """How much of a clip is over with the frames of an instant; 0 of a camera, which has no end."""
+    """Share of a clip up to the frames of an instant; 0 for a camera, which has no end."""
     lengths = {view.number: view.frames for view in clip.views}
     shares = [(one.index + 1) / lengths[n] for n, one in frames.items() if lengths[n]]
     return min(1.0, max(shares, default=0.0))
@@ -75,10 +75,10 @@ def instants(
     """The frames of all views, those of one instant together, in the order of time.
 
     Args:
-        clip: Of the views.
-        readers: Read them.
-        sources: Of their landmarks.
-        starts: The frame of each view from which on they are given, where it is not the first.
+        clip: The clip of the views.
+        readers: Reader of each view.
+        sources: Source of each view's landmarks.
+        starts: First frame of each view, where it is not 0.
     """
     streams = {
         n: recorded(view, clip.every, readers[n], sources.get(n), starts.get(n, 0))

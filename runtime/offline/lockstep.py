@@ -1,4 +1,4 @@
-"""The same steps as live, in one process and in lock-step: deterministic, as fast as it goes."""
+"""The live steps in one process, in lock-step: deterministic, as fast as possible."""
 
 import time
 from collections.abc import Sequence
@@ -61,7 +61,7 @@ from viewer.room.background_source import FilmBackground, opening_of_view
 
 
 class Tracked(NamedTuple):
-    """What tracking a clip gave."""
+    """The result of tracking a clip."""
 
     clip: Clip
     bodies: Sequence[Body]
@@ -70,7 +70,7 @@ class Tracked(NamedTuple):
 
 
 class Decoders:
-    """One decoder a view, kept over many clips: a child's start costs more than a clip."""
+    """One decoder per view, reused over many clips: starting a child takes longer than a clip."""
 
     def __init__(self) -> None:
         """None started yet."""
@@ -89,7 +89,7 @@ class Decoders:
 
 
 class _Job(NamedTuple):
-    """What is asked of a clip."""
+    """A request to track a clip."""
 
     settings: Settings
     method: Method
@@ -100,7 +100,7 @@ class _Job(NamedTuple):
 
 
 class _Followed(NamedTuple):
-    """A clip that was followed."""
+    """A tracked clip."""
 
     ready: Prepared
     done: Performance
@@ -115,19 +115,19 @@ def track_clip(
     method: Method | None = None,
     course: Course = Course(),
 ) -> Tracked:
-    """Track one clip from its videos to its bodies; `watch` is shown every instant.
+    """Track one clip from its videos to its bodies; `watch` receives every instant.
 
     Args:
-        settings: Of the run.
+        settings: The run's settings.
         decoders: Read the videos.
-        views: The cameras to use; None: all that the clip has.
-        watch: Is shown every instant of a clip whose scale is known before.
-        method: Instead of that of the settings' mode.
-        course: Is told how much of the clip is over, and keeps what it gives.
+        views: The cameras to use; None: all of the clip.
+        watch: Receives every instant of a clip whose scale is known before.
+        method: Replaces that of the settings' mode.
+        course: Receives the progress, and stores the results.
 
     Raises:
         ClipError: When the clip cannot be used.
-        DecoderDied: When a video broke the decoder.
+        DecoderDied: When a video crashed the decoder.
         SettingsError: When the source of landmarks cannot be used.
     """
     began = time.perf_counter()
@@ -151,7 +151,7 @@ def track_clip(
 
 
 def _refuse_other_modes(clip: Clip, method: Method) -> None:
-    """See that the method is one for so many cameras."""
+    """Refuse a method that does not support that many cameras."""
     several = len(clip.views)
     if method.stick_lifting and several > 1:
         raise ClipError(f"{clip.name}: the thesis's mode is for one camera: add --views 1")
@@ -165,7 +165,7 @@ def _refuse_other_modes(clip: Clip, method: Method) -> None:
 
 
 def _as_left(looked: Looked, course: Course) -> Looked:
-    """With the clock by which a run that was cut short was being tracked again."""
+    """With the clock of an interrupted run that was being tracked again."""
     left = course.work.resumed(STAGE, LockstepState)
     late_s = left.late_s - looked.clip.views[-1].late_s if left else 0.0
     if not late_s:
@@ -187,7 +187,7 @@ def _followed(looked: Looked, job: _Job, began: float) -> _Followed:
 
 
 def _told(looked: Looked, job: _Job, followed: _Followed, clock: Clock) -> Tracked:
-    """What tracking gave, with what is known of the rig and of the clock as it is set now."""
+    """The result, with the rig and the clock as now known."""
     clip, settings, (ready, done, witness) = looked.clip, job.settings, followed
     trust = trust_facts(clip, witness, clock, insisted=settings.trust_calibration)
     facts = _facts(ready, done, job.sources) | calibration_facts(looked) | trust
@@ -200,7 +200,8 @@ def _told(looked: Looked, job: _Job, followed: _Followed, clock: Clock) -> Track
 def _in_two_passes(
     clip: Clip, settings: Settings, method: Method, decoders: Decoders, course: Course
 ) -> Tracked:
-    """One camera whose scale all of the clip must tell, or that is followed as the thesis does."""
+    """Track one camera in passes: the scale needs the whole clip, or the thesis's method is
+    used."""
     view = clip.views[0]
     reel = Reel(decoders.of[view.number], due=view.frames)
     opening = opening_of_view(view, settings.silhouette, reel)
@@ -213,7 +214,7 @@ def _in_two_passes(
 def _prepared(
     looked: Looked, settings: Settings, method: Method, decoders: Decoders, began: float
 ) -> Prepared:
-    """Viewers that know their backgrounds and an integrator that knows the rig."""
+    """Viewers with their backgrounds and an integrator with the rig."""
     clip, odd = looked.clip, [looked.warning] if looked.warning else []
     rig, alone = whole_rig(clip), len(clip.views) == 1
     known = body_of(settings, lambda own: track_clip(own, decoders).bodies)
@@ -234,7 +235,7 @@ def _prepared(
 
 
 def _facts(ready: Prepared, done: Performance, sources: Sources) -> Facts:
-    """For the summary: what was tracked, how long it took, what was odd."""
+    """For the summary: the input, the time taken, warnings."""
     clip, acts = ready.clip, ready.clip.meta.acts
     endings = [(view, ready.reels[view.number].ending) for view in clip.views]
     cut_off = (shortfall(view, ending) for view, ending in endings)
@@ -254,10 +255,10 @@ def _facts(ready: Prepared, done: Performance, sources: Sources) -> Facts:
 
 
 def measured_before(settings: Settings) -> Bdp | None:
-    """The person's body as the opening clip that the settings name tells it, if they name one.
+    """The person's body from the opening clip in the settings, if any.
 
     Raises:
-        SettingsError, ClipError, DecoderDied: As `body_of` and `track_clip` do.
+        SettingsError, ClipError, DecoderDied: As `body_of` and `track_clip`.
     """
     with Decoders() as decoders:
         return body_of(settings, lambda own: track_clip(own, decoders).bodies)

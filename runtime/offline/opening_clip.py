@@ -1,4 +1,4 @@
-"""A body measured before a run: from a clip of its own that shows the person in a T."""
+"""A body measured before a run, from a separate clip of the person in a T pose."""
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -14,15 +14,15 @@ from common.video.clip_sources import ClipError
 
 
 def body_of(settings: Settings, track: Callable[[Settings], Sequence[Body]]) -> Bdp | None:
-    """The person's lengths, metres, as the opening clip tells them; None where none is named.
+    """The person's lengths, metres, from the opening clip; None without one.
 
     Args:
-        settings: Of the run; its mode and size hold for the opening clip too.
-        track: Follows the person of a clip.
+        settings: The run's; mode and size hold for the opening clip too.
+        track: Tracks a clip.
 
     Raises:
         SettingsError: When the opening clip's own settings name another one, or cannot be read.
-        ClipError: When nobody is seen in it, or it cannot be used.
+        ClipError: When it shows no person, or cannot be used.
     """
     if not settings.opening:
         return None

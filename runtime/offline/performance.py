@@ -25,36 +25,36 @@ from viewer.landmarks.landmark_sources import Sources
 
 STAGE: Final = "instants"
 TURNS_S: Final = 0.0002
-"""How long a thread that has computed waits for its turn to be interpreted: by Python's own 5 ms
-two viewers side by side would be no faster than one after the other."""
+"""Python's thread switch interval, seconds: with its default of 5 ms two viewers in parallel
+would be no faster than one after the other."""
 
 Each = Callable[[dict[ViewerNumber, CapturedFrame], dict[int, View], Body], object]
-"""Looks at the frames of an instant, the reports on them and the body they gave."""
+"""Receives the frames of an instant, their reports and the body."""
 
 
 class Watch(NamedTuple):
-    """Looks at a clip while it is followed."""
+    """Observes the tracking of a clip."""
 
     each: Each
     begin: Callable[[], object] = lambda: None
-    """Forgets what it saw: the clip is followed from its first instant on again."""
+    """Forget all: the clip is tracked from its first instant again."""
 
 
 class Prepared(NamedTuple):
-    """A clip that can be followed."""
+    """A clip that is ready to be tracked."""
 
     clip: Clip
     reels: dict[ViewerNumber, Reel]
     viewers: dict[ViewerNumber, track.State]
     integrator: merge_state.State
     odd: list[str]
-    """What is odd about its backgrounds."""
+    """Warnings about its backgrounds."""
     seconds: float
-    """What that took."""
+    """Seconds of preparing them."""
 
 
 class LockstepState(NamedTuple):
-    """All that is remembered from one instant to the next."""
+    """The whole state between instants."""
 
     viewers: dict[ViewerNumber, track.State]
     integrator: merge_state.State
@@ -63,36 +63,36 @@ class LockstepState(NamedTuple):
     noticed: diagnostics.State
     guide: Guide | None
     starts: dict[ViewerNumber, int]
-    """The next frame of each view that has given one."""
+    """The next frame of each view that has had one."""
     spent: dict[str, float]
     """Seconds of each stage."""
     late_s: float = 0.0
-    """By how much the times of view 2 are set back."""
+    """Time by which the times of view 2 are set back."""
 
 
 class Performance(NamedTuple):
-    """What following a clip gave."""
+    """The result of tracking a clip."""
 
     bodies: Sequence[Body]
     integrator: merge_state.State
     noticed: diagnostics.State
     news: tuple[str, ...]
-    """What became of the rig."""
+    """Reports about the rig."""
     seconds: dict[str, float]
-    """Of each stage."""
+    """Seconds of each stage."""
 
 
 def performed(
     ready: Prepared, sources: Sources, witness: Witness, watch: Watch | None, course: Course
 ) -> Performance:
-    """Follow a clip, from where it was left; the views of an instant side by side.
+    """Track a clip, from where it was interrupted; an instant's views run in parallel.
 
     Args:
         ready: The clip.
-        sources: Of landmarks.
-        witness: Sees every instant.
+        sources: Sources of landmarks.
+        witness: Receives every instant.
         watch: Likewise, where there is one.
-        course: Is told how far it is, and keeps the bodies.
+        course: Receives the progress, and stores the bodies.
     """
     clip, work = ready.clip, course.work
     calibration = LiveCalibration(ready.integrator, looks=False, solver=SolverAtOnce())
@@ -117,7 +117,7 @@ def performed(
 
 @contextmanager
 def _side_by_side(count: int) -> Iterator[Executor]:
-    """Threads that take short turns."""
+    """Threads with a short switch interval."""
     turns_s = sys.getswitchinterval()
     sys.setswitchinterval(TURNS_S)
     try:
@@ -147,7 +147,7 @@ def _stepped(
     calibration: LiveCalibration,
     pool: Executor,
 ) -> tuple[LockstepState, dict[int, View], Body]:
-    """One instant more."""
+    """Process one instant."""
     start = time.perf_counter()
     viewers, reports = looked(going.viewers, frames, going.guide, pool.map)
     starts = going.starts | {number: frame.index + 1 for number, frame in frames.items()}
@@ -170,7 +170,7 @@ def _stepped(
 def _saved(
     going: LockstepState, calibration: LiveCalibration, witness: Witness, following_s: float
 ) -> LockstepState:
-    """With what is remembered elsewhere."""
+    """With the state kept elsewhere."""
     return going._replace(
         calibration=calibration.looking,
         witness=witness.seen,

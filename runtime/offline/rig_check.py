@@ -1,4 +1,4 @@
-"""Whether the rig of a run is believable: what both viewers saw is kept and asked at its end."""
+"""Whether a run's rig is believable: both views' landmarks are kept and tested at its end."""
 
 from collections.abc import Sequence
 from typing import Final, NamedTuple
@@ -13,33 +13,33 @@ from common.video.clip_facts import Clip
 from viewer.captured_frame import CapturedFrame
 
 MOST_LATE_FRAMES: Final = 0.75
-"""A view 2 that is late by more than this, in frames, is tracked again with its times set back."""
+"""Delay of view 2, frames, above which the clip is tracked again with its times set back."""
 DOUBTED: Final = 0.05
-"""Share of the confidence that is left to bodies of views that do not belong together in time."""
+"""Factor on the confidence of bodies from views whose times do not match."""
 MOST_FRAMES: Final = 3_000
-"""So much of a run is kept."""
+"""Seconds of a run that are kept."""
 
 
 class Seen(NamedTuple):
-    """What was seen until now."""
+    """The observations so far."""
 
     rows: dict[int, list[Row]]
-    """Of each view that was heard of."""
+    """By view."""
     moved: bool = False
     """A camera was moved."""
 
 
 class Witness:
-    """Keeps the landmarks of all views, instant by instant, while the cameras stand."""
+    """Keeps the landmarks of all views, instant by instant, while no camera is moved."""
 
     def __init__(self) -> None:
-        """Nothing was seen yet."""
+        """No observation yet."""
         self.seen = Seen({})
 
     def __call__(
         self, _: dict[ViewerNumber, CapturedFrame], reports: dict[int, View], body: Body
     ) -> None:
-        """One instant more; the given rig is not held against what is seen after a move."""
+        """Process one instant; observations after a move do not count against the given rig."""
         self.seen = self.seen._replace(moved=self.seen.moved or bool(body.moved))
         if self.seen.moved:
             return
@@ -49,7 +49,7 @@ class Witness:
                 rows.append(row_of(report))
 
     def sighting(self, clip: Clip) -> Sighting | None:
-        """What both views of a clip saw; None where it has one view, or more than two."""
+        """Both views of a clip; None where it has one view, or more than two."""
         if len(clip.views) != 2:
             return None
         first, second = (track_of_rows(self.seen.rows.get(v.number, [])) for v in clip.views)
@@ -57,13 +57,13 @@ class Witness:
 
 
 def clock_seen(clip: Clip, witness: Witness) -> Clock:
-    """The clock of view 2, by all that both views saw; not known of one, or of more than two."""
+    """The clock of view 2, by all observations; unknown for one view, or more than two."""
     sighting = witness.sighting(clip)
     return UNSEEN if sighting is None else clock_of(sighting)
 
 
 def unchecked(clip: Clip) -> list[str]:
-    """What to say of a clip of more cameras than clocks and calibration can be checked of."""
+    """The note for a clip with too many cameras to check clocks and calibration."""
     if len(clip.views) <= 2:
         return []
     return [
@@ -79,13 +79,13 @@ def is_late(clip: Clip, clock: Clock) -> bool:
 
 
 def trust_facts(clip: Clip, witness: Witness, clock: Clock, *, insisted: bool) -> Facts:
-    """For the summary: how far the rig is to be believed, and what to do where it is not.
+    """For the summary: the rig's assessment, and the cure where it is not believable.
 
     Args:
-        clip: What was tracked.
-        witness: What both views saw in it.
-        clock: Of view 2, as the clip has it.
-        insisted: The user trusts the calibration: nothing is advised.
+        clip: The tracked clip.
+        witness: Observations of both views.
+        clock: Clock of view 2, as the clip has it.
+        insisted: The user trusts the calibration: no advice is given.
     """
     from calibration.gate.rig_fault import advice_on
     from calibration.gate.rig_trust import trust_of
@@ -104,7 +104,7 @@ def trust_facts(clip: Clip, witness: Witness, clock: Clock, *, insisted: bool) -
 
 
 def doubts(facts: Facts) -> list[str]:
-    """What to say of a rig that is not believable."""
+    """The warning about a rig that is not believable."""
     trust = facts.get("trust")
     if not trust or not trust["advice"]:
         return []
@@ -117,12 +117,12 @@ def doubts(facts: Facts) -> list[str]:
 
 
 def clock_facts(clip: Clip, clock: Clock, given_s: float | None) -> Facts:
-    """For the summary: by how much view 2 was set back in time, and which other latenesses fit.
+    """For the summary: the time by which view 2 was set back, and other possible delays.
 
     Args:
-        clip: As it was tracked.
-        clock: Of view 2, by the times that its files tell and what the user says.
-        given_s: How late the user says that it is.
+        clip: The tracked clip.
+        clock: Clock of view 2, by the times of its files and the user's offset.
+        given_s: The user's offset.
     """
     if len(clip.views) != 2:
         return {}
@@ -142,7 +142,7 @@ def clock_facts(clip: Clip, clock: Clock, given_s: float | None) -> Facts:
 
 
 def doubted(bodies: Sequence[Body], clock: Clock) -> Sequence[Body]:
-    """The bodies, hardly believed where view 2 is late and nobody knows by how much."""
+    """The bodies, with little confidence where view 2 has an unknown delay."""
     if clock.state != "ambiguous" or clock.may_be_on_time:
         return bodies
     return [
@@ -152,7 +152,7 @@ def doubted(bodies: Sequence[Body], clock: Clock) -> Sequence[Body]:
 
 
 def clock_word(facts: Facts) -> str:
-    """What to say of the clock of view 2; "" where nothing speaks against the files' times."""
+    """The warning about the clock of view 2; "" where the files' times may be right."""
     told = facts.get("clock")
     if not told or (told["may_be_on_time"] and not told["applied_s"]):
         return ""

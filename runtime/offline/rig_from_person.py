@@ -1,4 +1,4 @@
-"""A first pass over clips without a calibration: their cameras, by the person who moves there."""
+"""A first pass over uncalibrated clips: their cameras, from the person who moves there."""
 
 from collections.abc import Mapping
 from typing import Final, NamedTuple
@@ -21,20 +21,20 @@ from viewer import track
 from viewer.landmarks.landmark_sources import Sources
 
 ON_TIME: Final = Clock(0.0)
-"""Where the user says how late view 2 is, it is on time by that."""
+"""The clock of view 2 where the user gives its delay: it is on time after that."""
 MOST_FRAMES: Final = 3_000
-"""So much of a clip is looked at."""
+"""Seconds of a clip that are used."""
 
 
 class Looked(NamedTuple):
-    """What the first pass gave."""
+    """Results of the first pass."""
 
     clip: Clip
-    """With the rig, where one was found, and with the clock of view 2 set right."""
+    """With the rig, if found, and with the clock of view 2 corrected."""
     found: PersonCalibration | None = None
     warning: str = ""
     clock: Clock | None = None
-    """Of view 2, by its own times; None where it was not asked for."""
+    """Clock of view 2, by its own times; None where it was not estimated."""
 
 
 def sighting_of(
@@ -44,10 +44,10 @@ def sighting_of(
     readers: Mapping[ViewerNumber, Reader],
     sources: Sources,
 ) -> Sighting:
-    """What both views see of the person in a clip without a rig, until a camera is moved.
+    """Both views of the person in a clip without a rig, until a camera is moved.
 
     Raises:
-        DecoderDied: When a video broke the decoder.
+        DecoderDied: When a video crashed the decoder.
     """
     learnt = openings(clip, settings.silhouette, readers)
     viewers = {
@@ -77,10 +77,10 @@ def by_person(
     readers: Mapping[ViewerNumber, Reader],
     sources: Sources,
 ) -> Looked:
-    """A recorded clip of two views that has no rig with the one that the person in it tells.
+    """A recorded clip of two views, with a rig from its person where it has none.
 
-    It is left as it is where it has one, where the method asks for no landmarks, where too little
-    of anybody is seen, and where the views' pictures differ in size.
+    It is unchanged where it has a rig, where the method uses no landmarks, where too little of a
+    person is seen, and where the views' pictures differ in size.
     """
     from calibration.person.person_calibration import calibrated_by_person
 
@@ -102,12 +102,12 @@ def by_person(
 
 
 def on_time(clip: Clip, clock: Clock, late_s: float) -> Clip:
-    """The clip with the times of view 2 set back by its lateness, where that is found.
+    """The clip with the times of view 2 set back by its delay, where that is found.
 
     Args:
-        clip: Of two views.
-        clock: Of view 2.
-        late_s: The same, by the rig that is used.
+        clip: A clip of two views.
+        clock: Clock of view 2.
+        late_s: The delay by the rig in use.
     """
     period_s = clip.every / clip.views[1].fps
     is_late = clock.is_found and abs(late_s) >= LEAST_LATE * period_s
@@ -115,7 +115,7 @@ def on_time(clip: Clip, clock: Clock, late_s: float) -> Clip:
 
 
 def calibration_facts(looked: Looked) -> Facts:
-    """For the summary: the calibration that was found, and how good it is."""
+    """For the summary: the calibration found, and its quality."""
     if looked.found is None:
         return {}
     rig, quality = (msgspec.to_builtins(part) for part in (looked.found.rig, looked.found.quality))

@@ -1,4 +1,4 @@
-"""From videos of a printed board to `calibration.json` and a picture of what it covered."""
+"""From videos of a printed board to `calibration.json` and a picture of the covered area."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -18,31 +18,31 @@ from runtime.offline.board_films import looked_through
 from runtime.terminal import bar, warn
 
 UNCOVERED: Final = 0.4
-"""A picture of which the board covered less has lenses that are guessed at its rim."""
+"""Share of a picture covered by the board, below which its lens is uncertain at the border."""
 
 
 class Shown(NamedTuple):
-    """What the user says of the videos."""
+    """The user's options for the videos."""
 
     square_mm: float | None = None
-    """As measured; None: as printed."""
+    """Side of a square as measured; None: as printed."""
     chessboard: str | None = None
-    """Its squares, columns x rows; None: one of our boards."""
+    """Number of squares, columns x rows; None: one of our boards."""
     floor_s: float | None = None
-    """When it lies on the floor; None: found."""
+    """When it lies on the floor; None: found automatically."""
 
 
 def calibrate_by_videos(
     videos: Sequence[Path], shown: Shown, out: Path, console: Console
 ) -> tuple[Quality, Path]:
-    """Calibrate, write the rig with its quality, and beside it what the board covered.
+    """Calibrate, write the rig with its quality, and beside it a picture of the covered area.
 
     Returns:
         The quality, and the file of the picture.
 
     Raises:
         CalibrationError: When the videos do not suffice, or a file cannot be written.
-        Undecodable, DecoderDied: When one cannot be read.
+        Undecodable, DecoderDied: When a video cannot be read.
     """
     with bar(console) as progress:
         looked = looked_through([str(path) for path in videos], _boards(shown), progress)

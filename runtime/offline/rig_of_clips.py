@@ -1,4 +1,4 @@
-"""One rig by the person in all the clips of it."""
+"""One rig from the person in all clips that it recorded."""
 
 from collections.abc import Sequence
 from contextlib import ExitStack
@@ -22,28 +22,28 @@ from viewer.landmarks.landmark_sources import outside_sources
 
 
 class Given(NamedTuple):
-    """What the user knows of a rig before."""
+    """The user's knowledge of a rig."""
 
     stature_m: float = BodySettings().stature_m
     fov_deg: float | None = None
-    """How wide the cameras see."""
+    """Field of view of the cameras."""
 
 
 class FoundByClips(NamedTuple):
-    """A rig, and what else the clips tell."""
+    """A rig, and further results from the clips."""
 
     rig: Rig
     """At the size of their pictures."""
     quality: Quality
     clocks: tuple[Clock, ...]
-    """Of view 2 in each clip."""
+    """Clock of view 2 in each clip."""
 
 
 def calibrated_by_clips(paths: Sequence[Path], given: Given) -> FoundByClips:
-    """One rig by all the clips of it.
+    """One rig from all clips that it recorded.
 
     Raises:
-        CalibrationError: When too little of anybody is seen, or the clips are of two rigs.
+        CalibrationError: When too little of a person is seen, or the clips are of two rigs.
         ClipError, SettingsError, DecoderDied, Undecodable: When a clip cannot be used.
     """
     method = METHODS["default"]

@@ -1,1 +1,1 @@
-"""What is seen of a run from outside: figures for Prometheus, and whether it is well."""
+"""A run as seen from outside: metrics for Prometheus, and its health."""

@@ -1,4 +1,4 @@
-"""Whether a run is well: what is wrong with it, and what to do."""
+"""The health of a run: its faults, and their cures."""
 
 from collections.abc import Sequence
 from typing import Final
@@ -9,17 +9,17 @@ from common.bus.rate import silent
 from runtime.outside.run_figures import PartFigures, RunFigures
 
 OLD_S: Final = 2.0
-"""A newest body that is older: no view shows anything any more. A lone view that was lost goes
-unnoticed here; its viewer does not."""
+"""Age of the newest body, seconds, from which on no view works any more. This does not detect
+the loss of a single view; its viewer does."""
 READ: Final = "read log.txt in the run folder"
 
 
 def ailments(figures: RunFigures, needed: Sequence[str], now_s: float) -> list[str]:
-    """What is wrong with a run, a line each; none where all is well.
+    """The faults of a run, one line each; none where all is well.
 
     Args:
-        figures: Of the run.
-        needed: Names of the processes that it cannot do without.
+        figures: The run's figures.
+        needed: Names of the processes that it requires.
         now_s: By the room's clock.
     """
     parts = [(name, figures.parts.get(name, PartFigures())) for name in needed]
@@ -28,7 +28,7 @@ def ailments(figures: RunFigures, needed: Sequence[str], now_s: float) -> list[s
 
 
 def _ailment(part: PartFigures, now_s: float) -> str:
-    """What is wrong with a process, or ""."""
+    """The fault of a process, or ""."""
     if part.pulse is None or part.heard_s is None:
         return f"not heard yet; a first start compiles for up to a minute: wait, then {READ}"
     if part.pulse.state == "ended":
@@ -49,7 +49,7 @@ def _ailment(part: PartFigures, now_s: float) -> str:
 
 
 def _stillness(figures: RunFigures, now_s: float) -> list[str]:
-    """Whether bodies have ceased although all processes live."""
+    """Whether there are no more bodies although all processes are alive."""
     integrator = figures.parts.get("integrator", PartFigures()).pulse
     if figures.body_s is None or integrator is None or integrator.state != "running":
         return []

@@ -1,4 +1,4 @@
-"""The figures of a run as Prometheus reads them."""
+"""The figures of a run in Prometheus's form."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import accumulate
@@ -21,9 +21,9 @@ COUNTS: Final = (
     ("missed_guides", "guide_misses", "Frames that were looked at without a guide of the last."),
     ("hurried_frames", "hurried", "Frames so late that a viewer told their outline alone."),
 )
-"""Name of a count, its field in a Pulse, what it counts."""
+"""Name of a counter, its field in a Pulse, its description."""
 CAUSES: Final = ("malformed", "foreign")
-"""Why a message is rejected; fields of a Pulse."""
+"""Reasons for rejecting a message; fields of a Pulse."""
 AGREEMENT: Final = (
     ("rig_apart_meters", "apart_mm", 0.001, "How far apart both views place the joints."),
     ("rig_soles_meters", "soles_mm", 0.001, "Height of the feet above the floor while standing."),
@@ -31,14 +31,14 @@ AGREEMENT: Final = (
     ("rig_motion_meters", "motion_mm", 0.001, "How far the views disagree how joints move."),
     ("rig_believed_ratio", "believed", 1.0, "By what the joints' confidence is multiplied."),
 )
-"""Name of a gauge, its field in an Agreement, by what that is multiplied, what it tells."""
+"""Name of a gauge, its field in an Agreement, its factor, its description."""
 
 
 def families(rooms: Mapping[str, RunFigures], now_s: float) -> Iterator[Metric]:
     """Every metric of one run, or of several.
 
     Args:
-        rooms: The figures of each run by its room's name, which is a label of every sample.
+        rooms: The figures of each run by its room's name, which labels every sample.
         now_s: By the clock of the figures.
     """
     parts = [(room, name, part) for room, own in rooms.items() for name, part in own.parts.items()]
@@ -49,7 +49,7 @@ def families(rooms: Mapping[str, RunFigures], now_s: float) -> Iterator[Metric]:
 
 
 Parts = Sequence[tuple[str, str, PartFigures]]
-"""Each process with its room's name and its own."""
+"""Each process with the names of its room and its own."""
 
 
 def _counts(parts: Parts) -> Iterator[Metric]:

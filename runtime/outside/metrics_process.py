@@ -1,4 +1,4 @@
-"""The metrics process: everything that is said, as figures and health for who asks by HTTP."""
+"""The metrics process: all messages as metrics and health, over HTTP."""
 
 import threading
 import time
@@ -22,30 +22,30 @@ from runtime.outside.metrics_server import served
 from runtime.outside.run_figures import RunFigures, Told, step
 
 HEAR_S: Final = 0.5
-"""So soon it is seen that the process shall end."""
+"""Interval of checks for the end, seconds."""
 BEHIND: Final = 10
-"""How far it stands back when cores are scarce: no pose waits for it."""
+"""Lowering of its priority where cores are scarce: the tracking must not wait for it."""
 PERIOD_S: Final = 1.0
 
 
 class Desk:
-    """The figures so far: taken in by several threads, given to others."""
+    """The figures so far: updated by several threads, read by others."""
 
     def __init__(self, needed: Sequence[str], room: str) -> None:
-        """Nothing heard yet; these processes the run cannot do without."""
+        """No message yet; the run requires these processes."""
         self._needed, self._room = needed, room
         self._figures = RunFigures()
         self._lock = threading.Lock()
 
     def hear(self, box: Inbox[Any] | Mailbox[Any], stop: threading.Event) -> None:
-        """Take in what comes, at once: what waited would count as late."""
+        """Process messages immediately: a waiting one would count as late."""
         while not stop.is_set():
             told = box.take(HEAR_S)
             if told is not None:
                 self.take_in(told)
 
     def take_in(self, told: Told) -> None:
-        """One message."""
+        """Process one message."""
         with self._lock:
             self._figures = step(self._figures, told, time.monotonic())
 
@@ -54,13 +54,13 @@ class Desk:
         return families({self._room: self._figures}, time.monotonic())
 
     def health(self) -> tuple[bool, Sequence[str]]:
-        """Whether the run is well, and what is to be said of that."""
+        """Whether the run is well, and the lines about it."""
         wrong = ailments(self._figures, self._needed, time.monotonic())
         return not wrong, wrong or [f"{self._room}: well"]
 
 
 def run(desk: Desk, bus: Bus, stop: threading.Event) -> None:
-    """Hear everything until stopped."""
+    """Receive all messages until stopped."""
     boxes: list[Inbox[Any] | Mailbox[Any]] = [
         *(bus.subscribe(kind) for kind in (Body, Posture, Pulse, Cameras)),
         bus.watch_alive(),
@@ -83,11 +83,11 @@ def run(desk: Desk, bus: Bus, stop: threading.Event) -> None:
 def main(
     settings: Settings, needed: Sequence[str], context: ProcessContext = ProcessContext()
 ) -> None:
-    """Answer at the address that the settings name, and hear the run, until stopped.
+    """Serve metrics at the address in the settings until stopped.
 
     Args:
-        settings: Of the run.
-        needed: Names of the processes that it cannot do without.
+        settings: The run's settings.
+        needed: Names of the processes that it requires.
         context: How this process runs.
 
     Raises:

@@ -1,4 +1,4 @@
-"""Figures and health by HTTP, for Prometheus and for whoever watches over services."""
+"""Metrics and health over HTTP, for Prometheus and for service monitors."""
 
 import threading
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -15,20 +15,20 @@ from common.endpoint import address_of
 from common.npz_file import Facts
 
 SLOW_S: Final = 5.0
-"""Who takes longer to send a request is hung up on."""
+"""Seconds after which an incomplete request is dropped."""
 TEXT: Final = ("Content-Type", "text/plain; charset=utf-8")
 
 Health = Callable[[], tuple[bool, Sequence[str]]]
-"""Whether all is well, and lines that say what is or is not."""
+"""Whether all is well, and lines about the state."""
 
 
 @contextmanager
 def served(address: str, metrics: Callable[[], Iterable[Metric]], health: Health) -> Iterator[None]:
-    """Answer `/metrics` and `/healthz` meanwhile, from a thread of their own.
+    """Answer `/metrics` and `/healthz` meanwhile, in a separate thread.
 
     Args:
         address: `HOST:PORT` to listen on.
-        metrics: Gives all figures; asked once a scrape.
+        metrics: Gives all metrics; called once per scrape.
         health: Gives the answer of `/healthz`: 200 where all is well, else 503.
     """
     registry = CollectorRegistry()
@@ -57,13 +57,13 @@ def served(address: str, metrics: Callable[[], Iterable[Metric]], health: Health
 
 
 class _Figures(Collector):
-    """What the library asks for figures."""
+    """The library's interface for metrics."""
 
     def __init__(self, metrics: Callable[[], Iterable[Metric]]) -> None:
         self._metrics = metrics
 
     def collect(self) -> Iterable[Metric]:
-        """Called once a scrape."""
+        """Called once per scrape."""
         return self._metrics()
 
 
@@ -75,4 +75,4 @@ class _Silent(WSGIRequestHandler):
     timeout = SLOW_S
 
     def log_message(self, format: str, *_: Any) -> None:
-        """Nobody reads that a page was asked for."""
+        """Requests are not logged."""

@@ -1,4 +1,4 @@
-"""The figures of a run, as they follow from what its processes say."""
+"""The figures of a run, derived from its processes' messages."""
 
 from bisect import bisect_left
 from collections.abc import Mapping
@@ -12,55 +12,55 @@ BUCKETS_S: Final = (
     *(0.005, 0.01, 0.015, 0.02, 0.03, 0.04, 0.05),
     *(0.0667, 0.1, 0.15, 0.25, 0.5, 1.0, 2.5),
 )
-"""Upper ends of the classes of latency; 66.7 ms is a frame at the paper's rate (P1)."""
+"""Upper bounds of the latency classes, seconds; 66.7 ms is a frame at the paper's rate (P1)."""
 
 Told = Body | Posture | Pulse | Cameras | Alive
-"""What the figures are made of."""
+"""The messages that the figures are derived from."""
 
 
 class PartFigures(NamedTuple):
-    """What is known of one process."""
+    """The figures of one process."""
 
     pulse: Pulse | None = None
-    """Its newest."""
+    """Its newest pulse."""
     heard_s: float | None = None
-    """When it said anything last."""
+    """Time of its last message."""
     there: bool = False
-    """It has its place on the bus; False before, and since it died or its link was cut."""
+    """Whether it is on the bus; False before, and after it died or its link was cut."""
     restarts: int = 0
-    """How often another one took its place."""
+    """Number of restarts."""
 
 
 class Latency(NamedTuple):
-    """Times from capture until a message was heard, counted in classes."""
+    """Times from capture to the message's receipt, counted in classes."""
 
     counts: tuple[int, ...] = (0,) * (len(BUCKETS_S) + 1)
-    """Of each of BUCKETS_S, the longer ones last."""
+    """For each of BUCKETS_S; longer ones last."""
     sum_s: float = 0.0
 
 
 class RunFigures(NamedTuple):
-    """What is known of a run."""
+    """The figures of a run."""
 
     parts: Mapping[str, PartFigures] = {}
     bodies: Mapping[str, int] = {}
-    """How many of each status."""
+    """Number of bodies of each status."""
     body: Body | None = None
-    """The newest."""
+    """The newest body."""
     body_s: float | None = None
-    """When it was heard."""
+    """Time of its receipt."""
     latencies: Mapping[str, Latency] = {}
     """Of bodies by "integrator", of postures by "recognizer"."""
     cameras: Cameras | None = None
 
 
 def step(figures: RunFigures, told: Told, now_s: float) -> RunFigures:
-    """Take in one message.
+    """The figures after one more message.
 
     Args:
         figures: So far.
-        told: What was said, or who came or went.
-        now_s: When it was heard, by the room's clock: the integrator host's monotonic clock.
+        told: A message, or an arrival or departure.
+        now_s: Time of receipt by the room's clock: the integrator host's monotonic clock.
     """
     match told:
         case Body():
@@ -79,7 +79,7 @@ def step(figures: RunFigures, told: Told, now_s: float) -> RunFigures:
 
 
 def _beaten(figures: RunFigures, pulse: Pulse, now_s: float) -> PartFigures:
-    """A process whose counts begin anew is another one."""
+    """A process whose counts begin again was restarted."""
     part = figures.parts.get(pulse.process, PartFigures())
     last = part.pulse
     anew = last is not None and (
@@ -92,7 +92,7 @@ BEGINNING: Final = ("starting", "ready")
 
 
 def _spoke(figures: RunFigures, name: str, clock_s: float, now_s: float) -> RunFigures:
-    """A process said something of the frame of that moment."""
+    """Count a process's message about a frame of that time."""
     took_s = max(now_s - clock_s, 0.0)
     before = figures.latencies.get(name, Latency())
     place = bisect_left(BUCKETS_S, took_s)

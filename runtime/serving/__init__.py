@@ -1,1 +1,1 @@
-"""Several rooms on one machine: sites started, watched over, changed and ended."""
+"""Several rooms on one machine: sites started, monitored, changed and ended."""

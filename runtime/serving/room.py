@@ -1,4 +1,4 @@
-"""One site under supervision: its process, what it says, why it does not run."""
+"""One supervised site: its process, its pulse, its error."""
 
 from multiprocessing import Pipe
 from multiprocessing.connection import Connection
@@ -18,18 +18,18 @@ from runtime.serving.site_status import Status, status_of
 from runtime.serving.sites import Site
 
 END_S: Final = 20.0
-"""What a site may take to end its processes and write its run; all sites end at once."""
+"""Time for a site to end its processes and write its run, seconds; all sites end at once."""
 AGAIN_S: Final = 60.0
-"""A site that failed, or died too often, is tried anew after that: its camera may be back."""
+"""Seconds after which a site that failed is tried again: its camera may be back."""
 SITE: Final = "site"
-"""The part that the figures of a site speak of."""
+"""The part to which a site's figures belong."""
 
 
 class Room:
-    """A site that was started."""
+    """A started site."""
 
     def __init__(self, site: Site, launcher: Launcher | None = None) -> None:
-        """Started now, by that launcher; an endpoint left open is chosen."""
+        """Started now, by that launcher; an open endpoint is chosen."""
         self.site = site
         self._launcher = launcher
         self.figures = RunFigures()
@@ -42,16 +42,16 @@ class Room:
 
     @property
     def status(self) -> Status:
-        """How it is."""
+        """Its state."""
         return status_of(self.site.name, self._pulses.get(self.site.name), self.failure)
 
     @property
     def pulse(self) -> Pulse | None:
-        """Its newest."""
+        """Its newest pulse."""
         return self._pulses.get(self.site.name)
 
     def look(self, now_s: float) -> str:
-        """Hear how it is, start it again where it died; what is to be told of that, or ""."""
+        """Read its pulse, restart it where it died; the line to report, or ""."""
         self._hear(now_s)
         if self.failure:
             if now_s >= self._again_s:
@@ -93,7 +93,7 @@ class Room:
         return Watched(part)
 
     def _fails(self, why: str, now_s: float) -> str:
-        """It is down, for a while."""
+        """It is down for a while."""
         self.failure = (
             f"{why.removeprefix(f'{self.site.name}: ')}; tried anew every {AGAIN_S:.0f} s, or at "
             "once when its settings change"
@@ -114,7 +114,7 @@ class Room:
 
 
 def site_main(site: Site, words: Connection) -> None:
-    """The process of a site, imported where it runs."""
+    """The process of a site, imported in its own process."""
     from runtime.serving.site_process import main
 
     main(site, words)

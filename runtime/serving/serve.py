@@ -1,4 +1,4 @@
-"""Serving sites: started, watched over, changed when their file changes, and ended together."""
+"""Serving of sites: started, monitored, changed with their file, and ended together."""
 
 import signal
 import threading
@@ -23,9 +23,9 @@ from runtime.terminal import say, warn
 
 LOOK_S: Final = 0.1
 WARM_S: Final = 300.0
-"""So long rooms wait for the launcher at most: where all is compiled anew, that is done once."""
+"""Longest wait of rooms for the launcher, seconds: a compilation is done once for all."""
 CHANGED_S: Final = 1.0
-"""How often is looked whether a file has changed."""
+"""Interval of checks whether a file has changed, seconds."""
 
 
 class SitesWatch:
@@ -38,12 +38,13 @@ class SitesWatch:
             SettingsError: When it cannot be used.
         """
         self.sites = load_sites(path)
-        """As the file had them when it could be used last."""
+        """The sites in the file when it could last be used."""
         self._path = path
         self._seen, self._next_s = _stamps(path), 0.0
 
     def changed(self, now_s: float, asked: threading.Event) -> bool:
-        """Whether it is to be read again: once a second by its looks, or since that is asked."""
+        """Whether it must be read again: its modification time is checked once a second, or
+        SIGHUP came."""
         if now_s < self._next_s:
             return False
         self._next_s = now_s + CHANGED_S
@@ -63,13 +64,13 @@ class SitesWatch:
 
 
 def serve(path: Path, console: Console) -> None:
-    """Serve the sites of a file until SIGINT or SIGTERM; SIGHUP reads it anew.
+    """Serve the sites of a file until SIGINT or SIGTERM; SIGHUP rereads it.
 
-    A terminal that is closed says SIGHUP too: where the console was shown on one, that ends it.
+    A closed terminal sends SIGHUP too: where the console was on one, that ends the service.
 
     Args:
-        path: Of the file.
-        console: Shows a table of the sites, and what happens.
+        path: The file of sites.
+        console: Shows a table of the sites, and news.
 
     Raises:
         SettingsError, PortHeld, PageError: When the file cannot be used; nothing was started.
@@ -105,7 +106,7 @@ def _refuse_what_is_held(sites: Sites) -> None:
 
 
 def _stamps(path: Path) -> dict[Path, tuple[int, int] | None]:
-    """By what is seen that a file of sites, or one that it names, has changed."""
+    """Attributes of the files whose change means a change of the sites."""
     return {file: _stamp(file) for file in files_of(path)}
 
 
@@ -118,7 +119,7 @@ def _stamp(path: Path) -> tuple[int, int] | None:
 
 
 def _answers(sites: Sites, house: House) -> AbstractContextManager[None]:
-    """Metrics and health of all sites by HTTP, where that is wanted."""
+    """Metrics and health of all sites over HTTP, where wanted."""
     if not sites.metrics:
         return nullcontext()
     from runtime.outside.metrics_server import served
@@ -134,7 +135,7 @@ def _signals(console: Console) -> Iterator[tuple[threading.Event, threading.Even
 
     def heed(number: int, _frame: FrameType | None) -> None:
         closed = attended and not console.file.isatty()
-        console.quiet |= closed  # each word to it would fail
+        console.quiet |= closed  # writing to it would fail
         (anew if number == HANG_UP and not closed else stop).set()
 
     heeded = (signal.SIGINT, HANG_UP) if HANG_UP else (signal.SIGINT,)

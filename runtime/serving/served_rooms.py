@@ -1,4 +1,4 @@
-"""The rooms that are served, together: what they are to become, how they are."""
+"""All served rooms: their wanted and their present state."""
 
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -12,12 +12,12 @@ from runtime.serving.sites import Site
 
 
 class House:
-    """The rooms that are served, by their names."""
+    """The served rooms, by name."""
 
     def __init__(
         self, launcher: Launcher, say: Callable[[str], None], lament: Callable[[str], None]
     ) -> None:
-        """None yet; each piece of news is said, what went wrong is lamented."""
+        """None yet; each piece of news is printed, and each error."""
         self._launcher = launcher
         self._rooms: dict[str, Room] = {}
         self._states: dict[str, str] = {}
@@ -33,24 +33,24 @@ class House:
 
     @property
     def pulses(self) -> dict[str, Pulse]:
-        """The newest of each room."""
+        """The newest pulse of each room."""
         pulses = {name: room.pulse for name, room in self._rooms.items()}
         return {name: pulse for name, pulse in pulses.items() if pulse is not None}
 
     @property
     def names(self) -> list[str]:
-        """Of the rooms."""
+        """The rooms' figures."""
         return list(self._rooms)
 
     def become(self, wanted: Mapping[str, Site]) -> None:
-        """Stop, start and change what is not as it shall be; leave the others alone."""
+        """Stop, start and change rooms until they are as wanted; leave the others alone."""
         stop, start = changes(wanted, {name: room.site for name, room in self._rooms.items()})
         self._end([self._rooms.pop(name) for name in stop])
         for site in start:
             self._rooms[site.name] = Room(site, self._launcher)
 
     def look(self) -> None:
-        """See how each room is; what died is started again."""
+        """Check each room; one that died is restarted."""
         for room in self._rooms.values():
             told = room.look(time.monotonic())
             if told:
@@ -58,7 +58,7 @@ class House:
             self._tell_state(room)
 
     def health(self) -> tuple[bool, Sequence[str]]:
-        """Whether all rooms are well, and a line of each."""
+        """Whether all rooms are well, and a line for each."""
         found = [room.status for room in list(self._rooms.values())]
         return all(status.well for status in found), [status.line for status in found]
 
@@ -70,7 +70,7 @@ class House:
         return families(figures, time.monotonic())
 
     def _tell_state(self, room: Room) -> None:
-        """Say how a room is, where that is another state than before."""
+        """Report a room's state, where it has changed."""
         name = room.site.name
         if room.pulse is not None and self._states.get(name) != room.pulse.state:
             self._states[name] = room.pulse.state

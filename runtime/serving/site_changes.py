@@ -1,4 +1,4 @@
-"""What is to be done that the sites which run become those that are wanted."""
+"""The changes from the running sites to the wanted ones."""
 
 from collections.abc import Mapping
 from typing import NamedTuple
@@ -7,18 +7,18 @@ from runtime.serving.sites import Site
 
 
 class Changes(NamedTuple):
-    """First some are stopped, then others are started; one that changed is both."""
+    """Sites to stop, then sites to start; a changed site is in both."""
 
     stop: tuple[str, ...]
     start: tuple[Site, ...]
 
 
 def changes(wanted: Mapping[str, Site], running: Mapping[str, Site]) -> Changes:
-    """What is to be done; sites that are as they shall be are left alone.
+    """The changes; unchanged sites are in neither.
 
     Args:
-        wanted: By their names.
-        running: By their names, as they were started.
+        wanted: By name.
+        running: By name, with the settings that they were started with.
     """
     return Changes(
         tuple(name for name, site in running.items() if wanted.get(name) != site),

@@ -1,4 +1,4 @@
-"""The process of one site: a live run that tells once a second how it is."""
+"""The process of one site: a live run that reports its state once a second."""
 
 import os
 import time
@@ -20,10 +20,10 @@ ENDED: Final = "ended"
 
 
 class Teller:
-    """Tells who serves the site how it is; who does not listen holds nothing up."""
+    """Reports the state to the service; it never blocks, even without a reader."""
 
     def __init__(self, name: str, words: Connection) -> None:
-        """On a pipe that several processes may have, one after the other."""
+        """On a pipe that successive processes may share."""
         self._name, self._words = name, words
         self._next_s = 0.0
         self._self = psutil.Process()
@@ -36,7 +36,7 @@ class Teller:
         if pulse.state != ENDED and now_s < self._next_s:
             return
         self._next_s = now_s + BEAT_S
-        with suppress(BlockingIOError):  # a pulse is less than a pipe takes at once
+        with suppress(BlockingIOError):  # a pulse fits into a pipe's atomic write
             self._words.send_bytes(encode(pulse))
 
 

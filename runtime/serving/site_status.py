@@ -1,4 +1,4 @@
-"""How a site is doing: its processes' pulses as one, and a line for who looks."""
+"""A site's state: its processes' pulses as one, and a line for display."""
 
 from collections.abc import Iterable, Mapping
 from typing import Literal, NamedTuple
@@ -10,18 +10,18 @@ WELL = ("ready", "running", "ended")
 
 
 class Status(NamedTuple):
-    """Of one site."""
+    """State of one site."""
 
     well: bool
     line: str
 
 
 def site_pulse(name: str, pulses: Mapping[str, Pulse], own_mb: float) -> Pulse:
-    """What a site's supervisor says of all its processes together.
+    """The pulse of a site's supervisor for all its processes.
 
     Args:
-        name: Of the site.
-        pulses: The newest of each process.
+        name: Name of the site.
+        pulses: The newest pulse of each process.
         own_mb: Memory of the supervisor itself.
     """
     hub = pulses.get("integrator")
@@ -40,11 +40,11 @@ def site_pulse(name: str, pulses: Mapping[str, Pulse], own_mb: float) -> Pulse:
 
 
 def status_of(name: str, pulse: Pulse | None, failure: str) -> Status:
-    """One line of how a site is.
+    """One line about a site's state.
 
     Args:
-        name: Of the site.
-        pulse: Its newest; None where it was not heard yet.
+        name: Name of the site.
+        pulse: Its newest pulse; None where there is none yet.
         failure: Why it does not run; "" where it does.
     """
     if failure:
@@ -60,7 +60,7 @@ def status_of(name: str, pulse: Pulse | None, failure: str) -> Status:
 
 
 def _state(hub: Pulse | None) -> Literal["starting", "ready", "running", "ended"]:
-    """The integrator's; a site that has once worked works while that is started again."""
+    """The integrator's state; a site that has once worked still works while it is restarted."""
     if hub is None:
         return "starting"
     return "running" if hub.state in LAME else hub.state  # type: ignore[return-value]

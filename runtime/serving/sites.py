@@ -1,4 +1,4 @@
-"""The sites that a machine serves: a TOML file of names and settings."""
+"""The sites of a machine: a TOML file of names and settings."""
 
 import os
 import re
@@ -20,45 +20,45 @@ from runtime.live.free_ports import ports
 
 NAME: Final = re.compile(r"\w[\w.-]*", re.ASCII)
 RUNS: Final = "runs"
-"""Folder beside the file, where a site names none."""
+"""Folder beside the file for sites that name none."""
 CURE: Final = (
     "give each another one (a bus may have [bus] endpoint = 'auto', a page port = 0: none)"
 )
 
 
 class SiteEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A site as it is written."""
+    """A site in the file."""
 
     name: str
-    """A plain word: of the site, and of its room where its settings name none."""
+    """A plain word: name of the site, and of its room where its settings name none."""
     settings: str | Settings
     """A settings file or a clip folder, or the settings themselves."""
     out: str = ""
-    """Folder of its run; runs/NAME beside the file when empty."""
+    """Folder of its run; runs/NAME beside the file where empty."""
     together: bool = False
-    """All its parts in one process: half the memory, but what breaks one ends all for a while."""
+    """All its parts in one process: half the memory, but a crash of one ends all for a while."""
 
     def __post_init__(self) -> None:
-        """Refuse what is no name of a folder and of a room."""
+        """Refuse a name that is invalid for a folder or a room."""
         if not NAME.fullmatch(self.name):
             raise ValueError(f"name must be a plain word, got {self.name!r}")
 
 
 class SitesFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What a file of sites may say."""
+    """The content of a file of sites."""
 
     site: list[SiteEntry] = []
     metrics: str = ""
-    """HOST:PORT of /metrics and /healthz of all sites together; nowhere when empty."""
+    """HOST:PORT of /metrics and /healthz for all sites together; nowhere where empty."""
 
     def __post_init__(self) -> None:
-        """Refuse what is no address."""
+        """Refuse an invalid address."""
         if self.metrics:
             address_of(self.metrics)
 
 
 class Site(NamedTuple):
-    """One room that is served."""
+    """One served room."""
 
     name: str
     settings: Settings
@@ -76,11 +76,12 @@ class Sites(NamedTuple):
 def load_sites(path: Path) -> Sites:
     """Read a file of sites, and the settings that it names.
 
-    Relative paths are relative to the file that they stand in, environment variables are filled in.
+    Relative paths are resolved against the file that contains them, environment variables are
+    replaced.
 
     Raises:
-        SettingsError: When something cannot be read, is unknown or ill-typed; when two sites have
-            one name, one folder or one port; when there is none.
+        SettingsError: When something cannot be read, is unknown or ill-typed; when two sites share
+            a name, a folder or a port; when there is no site.
     """
     said = _read(path)
     if not said.site:
@@ -93,7 +94,7 @@ def load_sites(path: Path) -> Sites:
 
 
 def files_of(path: Path) -> tuple[Path, ...]:
-    """A file of sites and the settings that it names, as far as it can be read."""
+    """A file of sites and the settings that it names, as far as readable."""
     try:
         said = _read(path)
     except SettingsError:
@@ -152,7 +153,7 @@ def _refuse_shared_ports(path: Path, sites: Mapping[str, Site], metrics: str) ->
 def _refuse_twice(
     path: Path, what: str, held: Sequence[tuple[str, str]], cure: str = "give each its own"
 ) -> None:
-    """Say which sites hold the same thing."""
+    """Refuse sites that share something."""
     for thing, times in Counter(thing for thing, _ in held).items():
         if times > 1:
             who = ", ".join(name for own, name in held if own == thing)

@@ -1,6 +1,6 @@
-"""What sites are forked from: what a run's parts have, and what its supervisor and metrics have.
+"""Modules that sites are forked with: those of a run's parts, of its supervisor and metrics.
 
-Imported where the launcher of a service loads what its sites need.
+The launcher of a service imports this module to load what its sites need.
 """
 
 from contextlib import suppress

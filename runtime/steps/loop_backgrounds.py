@@ -1,4 +1,4 @@
-"""The backgrounds of a loop of one's own: from pictures of the empty room, or its first images."""
+"""The backgrounds of a program's own loop: from pictures of the empty room, or its first images."""
 
 from collections.abc import Mapping
 
@@ -10,14 +10,14 @@ from runtime.steps.loop_images import Images, by_viewer, picture_of
 
 Plates = Mapping[ViewerNumber, Image]
 Learns = Mapping[ViewerNumber, tuple[Image, ...]]
-"""Pictures of the empty room, of each camera, at the size that is worked on."""
+"""Pictures of the empty room, by camera, at the working size."""
 
 
 def plates_of(background: Images, numbers: Mapping[str, ViewerNumber]) -> Plates:
-    """Pictures of the empty room, copied: one of each camera.
+    """Copied pictures of the empty room, one per camera.
 
     Raises:
-        ValueError: When there is none of a camera, or one is no image.
+        ValueError: When a camera has none, or one is no image.
     """
     plates = by_viewer(background, numbers)
     missing = [name for name, number in numbers.items() if number not in plates]
@@ -30,10 +30,10 @@ def plates_of(background: Images, numbers: Mapping[str, ViewerNumber]) -> Plates
 
 
 def empty_of(plates: Plates, clip: Clip) -> Learns:
-    """Those pictures as they are worked on.
+    """These pictures at the working size.
 
     Raises:
-        ValueError: When one is of another shape than the images of its camera.
+        ValueError: When one has another shape than the images of its camera.
     """
     for view in clip.views:
         plate = plates[view.number]
@@ -47,5 +47,5 @@ def empty_of(plates: Plates, clip: Clip) -> Learns:
 
 
 def is_enough(empty: tuple[Image, ...], view: ClipView, empty_s: float) -> bool:
-    """Whether a camera showed the empty room for so long."""
+    """Whether a camera has shown the empty room for long enough."""
     return len(empty) >= view.frames_in(empty_s)

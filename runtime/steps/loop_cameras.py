@@ -1,4 +1,4 @@
-"""The cameras of a loop of one's own: which there are, and how their images are worked on."""
+"""The cameras of a program's own loop: names, calibration, and working pictures."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -23,19 +23,19 @@ class Cameras(NamedTuple):
     """The cameras that give images."""
 
     numbers: dict[str, ViewerNumber]
-    """The viewer of each, by its name, in the order in which images are given."""
+    """Viewer number of each camera, by name, in the order of the images."""
     rig: Rig | None
     """Their calibration, for pictures of any size."""
     where: str
-    """What messages call it."""
+    """Its name in messages."""
 
 
 def cameras_of(calibration: str | Path | Rig | None, names: Sequence[str]) -> Cameras:
-    """The cameras of a calibration, or those of its cameras that are named.
+    """The cameras of a calibration, or the named ones among them.
 
     Raises:
         CalibrationError: When the calibration cannot be used.
-        SettingsError: When there are two without one, or one is named twice.
+        SettingsError: When there are two without a calibration, or one is named twice.
     """
     if isinstance(names, str):
         raise SettingsError(f"cameras is a list of names: [{names!r}]")
@@ -55,16 +55,16 @@ def cameras_of(calibration: str | Path | Rig | None, names: Sequence[str]) -> Ca
 def clip_of(
     cameras: Cameras, sizes: Mapping[ViewerNumber, Size], bound: Size, rate_hz: float
 ) -> Clip:
-    """What is known of the images, as of a clip: views and rig as they are worked on.
+    """The images' facts in the form of a clip: views and rig at the working size.
 
     Args:
-        cameras: Give the images.
-        sizes: Of each camera's images.
-        bound: Of the working pictures.
-        rate_hz: Images a second of each camera.
+        cameras: Source of the images.
+        sizes: Size of each camera's images.
+        bound: Bound of the working pictures.
+        rate_hz: Images per second of each camera.
 
     Raises:
-        CalibrationError: When the calibration is of other pictures, or no cameras stand so.
+        CalibrationError: When the calibration belongs to other pictures, or no cameras stand so.
     """
     views = tuple(
         ClipView(n, name, sizes[n], working_size(sizes[n], bound), rate_hz, 0, name=name)
@@ -84,7 +84,7 @@ def clip_of(
 
 
 def _place(rig: Rig, number: ViewerNumber) -> int:
-    """Of a viewer's camera in a calibration."""
+    """Index of a viewer's camera in a calibration."""
     return 0 if len(rig.cameras) == 1 else number - 1
 
 

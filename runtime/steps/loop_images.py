@@ -1,4 +1,4 @@
-"""The images of an instant, by camera, as a program hands them over."""
+"""The images of an instant, by camera, as a program passes them."""
 
 from collections.abc import Mapping, Sequence
 
@@ -10,20 +10,20 @@ from common.video.pictures import Image
 from common.video.reduction import reduced
 
 Images = Image | Sequence[Image | None] | Mapping[str, Image | None]
-"""Of one camera, of all in their order, or by the cameras' names; None: it has none now."""
+"""One camera's image, all in order, or by camera name; None: it has none now."""
 
 
 def by_viewer(
     images: Images | None, numbers: Mapping[str, ViewerNumber]
 ) -> dict[ViewerNumber, Image]:
-    """Those images that there are, by the viewers' numbers.
+    """The images that exist, by viewer number.
 
     Args:
-        images: As they were given.
-        numbers: The viewer of each camera, in the order in which images are given.
+        images: As passed.
+        numbers: Viewer number of each camera, in the order of the images.
 
     Raises:
-        ValueError: When one is no image, or they are not of these cameras.
+        ValueError: When one is no image, or they do not match these cameras.
     """
     listed = _listed(images, numbers)
     if len(listed) != len(numbers):
@@ -36,10 +36,10 @@ def by_viewer(
 
 
 def picture_of(image: Image, view: ClipView) -> Image:
-    """What is worked on of an image: a copy, for a program may read its next image into this one.
+    """The working copy of an image: a program may read its next image into the same array.
 
-    It lies in memory row by row and can be written, whatever the image does: for another kind of
-    array every compiled pass would be compiled anew.
+    It is contiguous and writable, whatever the image is: for another kind of array every compiled
+    pass would be compiled again.
     """
     return np.array(reduced(image, view.size, view.quarters), np.uint8, order="C")
 

@@ -1,4 +1,4 @@
-"""Linear algebra by one thread while steps go on: the same bits anywhere, and no waiting."""
+"""Single-threaded linear algebra during steps: the same bits everywhere, and no waiting."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -15,8 +15,8 @@ TURN: Final = RLock()
 def one_thread() -> Iterator[None]:
     """Limits the libraries of this process; its threads take turns.
 
-    OpenBLAS gets its threads back only from the thread that took them: limits of two threads that
-    overlap would leave the program one for good.
+    Only the thread that limited OpenBLAS can restore its threads: overlapping limits of two threads
+    would leave the program with one for good.
     """
     with TURN, _libraries().limit(limits=1):
         yield

@@ -19,7 +19,7 @@ from viewer.captured_frame import CapturedFrame
 Viewers = Mapping[ViewerNumber, track.State]
 Reports = Mapping[int, View]
 Each = Callable[..., Iterable[Any]]
-"""`map`, or one that works side by side."""
+"""`map`, or a parallel version."""
 
 
 def viewer_of(
@@ -30,15 +30,15 @@ def viewer_of(
     background: Background,
     somebody: Landmarks | None = None,
 ) -> track.State:
-    """A viewer of a clip that knows its background.
+    """A viewer of a clip with its background.
 
     Args:
-        view: Its camera's.
+        view: The camera's view.
         clip: With the rig.
-        settings: Of the run.
-        method: What is done beyond the print.
+        settings: The run's settings.
+        method: The departures from the print.
         background: The picture without people.
-        somebody: The person in the first frame, where all of the clip was looked at before.
+        somebody: The person in the first frame, where the whole clip was examined before.
     """
     rig = whole_rig(clip)
     camera = None if rig is None else rig.cameras[view.number - 1]
@@ -52,12 +52,12 @@ def looked(
     guide: Guide | None,
     each: Each = map,
 ) -> tuple[dict[ViewerNumber, track.State], dict[int, View]]:
-    """What each viewer remembers after its frame, and its report.
+    """Each viewer's state after its frame, and its report.
 
     Args:
-        viewers: What each remembers.
-        frames: Of the instant; a viewer without one stays as it is.
-        guide: What the integrator made of the instant before; None at the start.
+        viewers: State of each.
+        frames: Frames of the instant; a viewer without one keeps its state.
+        guide: The integrator's guide after the instant before; None at the start.
         each: Calls the viewers' steps.
     """
     before = [viewers[number] for number in frames]
@@ -69,12 +69,12 @@ def looked(
 def joined(
     integrator: merge_state.State, reports: Reports, calibration: LiveCalibration
 ) -> tuple[merge_state.State, Body, Guide]:
-    """What the integrator remembers after the reports of an instant, the body and the guide.
+    """The integrator's state after the reports of an instant, the body and the guide.
 
     Args:
-        integrator: What it remembers.
-        reports: One at least.
-        calibration: Hears them, and changes the rig.
+        integrator: Its state.
+        reports: At least one.
+        calibration: Receives them, and may change the rig.
     """
     instant = instant_of(reports, len(integrator.frames))
     state, body, guide = merge.step(integrator, instant)

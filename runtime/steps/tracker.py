@@ -1,4 +1,4 @@
-"""tritrack in a loop of one's own: images in, bodies out, in this process."""
+"""tritrack in a program's own loop: images in, bodies out, in this process."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -33,24 +33,24 @@ from viewer.background.background import learn
 from viewer.captured_frame import CapturedFrame
 
 BOUND: Final = "320x240"
-"""Of the working picture: README's figures are at this size."""
+"""Default size of the working picture: README's figures are at this size."""
 RATE_HZ: Final = 15.0
 LARGEST_RATE_HZ: Final = 1000.0
 
 
 class Bodies(msgspec.Struct, frozen=True):
-    """The bodies of one instant, to be gone through."""
+    """The bodies of one instant, to iterate over."""
 
     people: tuple[Body, ...]
     cameras: tuple[str, ...] = ()
     """Names of the rig's cameras."""
 
     def __iter__(self) -> Iterator[Body]:
-        """Body by body."""
+        """Iterate over the bodies."""
         return iter(self.people)
 
     def __len__(self) -> int:
-        """How many there are; who is not seen is one, of status `empty` or `lost`."""
+        """Their number; an unseen person counts as one, of status `empty` or `lost`."""
         return len(self.people)
 
     def __getitem__(self, place: int) -> Body:
@@ -58,18 +58,18 @@ class Bodies(msgspec.Struct, frozen=True):
         return self.people[place]
 
     def to_numpy(self) -> Facts:
-        """As the arrays of `poses.npz`, a row a body: `joints_m` (n, 15, 3) and so on."""
+        """As the arrays of `poses.npz`, one row per body: `joints_m` (n, 15, 3) and so on."""
         return poses(self.people, self.cameras)
 
 
 class _Going(NamedTuple):
-    """What is remembered from one instant to the next."""
+    """The state between instants."""
 
     clip: Clip
     learns: Learns
-    """Of each camera whose background is learnt yet."""
+    """By camera whose background is still being learnt."""
     viewers: dict[ViewerNumber, track.State]
-    """Of each camera whose background is known."""
+    """By camera whose background is known."""
     integrator: merge_state.State
     calibration: LiveCalibration
     naming: recognizer.State
@@ -80,10 +80,10 @@ class _Going(NamedTuple):
 
 
 class Tracker:
-    """Follows one person in the images of one camera, or of two to eight that are calibrated.
+    """Tracks one person in the images of one camera, or of two to eight calibrated ones.
 
     The steps are those of `tritrack track`: calibrated clips give the same bodies, bit for bit,
-    where both are given pictures of the empty room. There is no other process, no bus, no file.
+    where both get pictures of the empty room. There is no other process, no bus, no file.
 
     Examples:
         >>> import numpy as np
@@ -111,21 +111,23 @@ class Tracker:
         """Nothing seen yet.
 
         Args:
-            calibration: A `calibration.json`, or what one holds; one camera can do without.
-            cameras: Names of those that give images, in their order; all of the calibration's
-                when empty, or one, `cam1`, where there is none.
+            calibration: Path or content of a `calibration.json`; one camera can do without.
+            cameras: Names of the cameras that give images, in order; all of the calibration's where
+                empty, or one, `cam1`, without a calibration.
             size: Bound of the working picture, width x height, pixels.
             mode: As `--mode`.
-            landmarks: Whether the network of landmarks looks at the pictures.
-            background: Of the empty room, as images are given to `step`; None: it is learnt from
-                the first half second of images, as of a live camera, without a person.
-            rate_hz: Images a second of each camera, about, also where `captured_s` is given.
-            stature_m: Of the person, where no calibration gives the scale.
+            landmarks: Whether the landmark network is used.
+            background: Images of the empty room, in the form of `step`'s; None: it is learnt from
+                the first half second of images, as for a live camera, without a person.
+            rate_hz: Approximate rate of each camera, Hz, also where `captured_s` is given.
+            stature_m: The person's stature, where no calibration gives the scale.
 
         Raises:
             CalibrationError: When the calibration cannot be used.
-            SettingsError: When anything else is out of bounds, or not for a loop of one's own.
-            ValueError: When `background` is no image of each camera. Both errors above are such.
+            SettingsError: When anything else is out of bounds, or not supported in a program's own
+            loop.
+            ValueError: When `background` lacks an image of a camera. Both errors above are
+            ValueErrors.
         """
         self._settings = _settings(size, mode, landmarks, stature_m)
         self._rate_hz = float(rate_hz)
@@ -140,28 +142,28 @@ class Tracker:
 
     @property
     def cameras(self) -> tuple[str, ...]:
-        """Names of the cameras, in the order in which images are given."""
+        """Names of the cameras, in the order of the images."""
         return tuple(self._cameras.numbers)
 
     @property
     def posture(self) -> Posture | None:
-        """What the body is doing, by the last step; None before the first."""
+        """The posture after the last step; None before the first."""
         return None if self._going is None else self._going.posture
 
     def step(self, images: Images, captured_s: float | None = None) -> Bodies:
-        """One instant: the image of each camera, and the bodies that they show.
+        """One instant: the image of each camera in, its bodies out.
 
-        Images are copied. An instant that is refused, or interrupted, is as if it had never come.
+        Images are copied. A refused or interrupted instant changes nothing.
 
         Args:
             images: (H, W, 3) uint8, blue, green, red; always of the same size. None where a camera
                 has none now; the first instant needs one of each.
-            captured_s: When they were taken, seconds on any clock; None: `rate_hz` tells.
+            captured_s: Capture time, seconds on any clock; None: derived from `rate_hz`.
 
         Raises:
-            ValueError: When an image is no such array, or another size than before, when there is
-                none, or when time does not go on.
-            CalibrationError: When the calibration is of pictures of another shape.
+            ValueError: When an image is no such array, or has another size than before, when there
+                is none, or when time does not increase.
+            CalibrationError: When the calibration belongs to pictures of another shape.
         """
         given, going = by_viewer(images, self._cameras.numbers), self._going
         self._refuse_too_few(given)
@@ -172,7 +174,7 @@ class Tracker:
             heard = going.calibration.looking
             try:
                 self._going, body = self._stepped(going, given, now_s)
-            except BaseException:  # an interrupted instant is as if it had never come
+            except BaseException:  # an interrupted instant changes nothing
                 going.calibration.looking = heard
                 raise
         return Bodies((body,), camera_names(self._going.clip))
@@ -187,7 +189,7 @@ class Tracker:
             raise ValueError("no camera gives an image: leave the instant out, or end at it")
 
     def _begun(self, given: Mapping[ViewerNumber, Image]) -> _Going:
-        """The views as they are worked on, and steps that have seen nothing."""
+        """The views at the working size, and the initial states."""
         settings, period_s = self._settings, 1.0 / self._rate_hz
         sizes = {n: (image.shape[1], image.shape[0]) for n, image in given.items()}
         clip = clip_of(self._cameras, sizes, size_of(settings.size), self._rate_hz)
@@ -227,7 +229,8 @@ class Tracker:
         return going._replace(instants=going.instants + 1, last_s=now_s), body
 
     def _learnt(self, going: _Going, number: ViewerNumber, picture: Image) -> _Going:
-        """With one picture more of a camera's empty room, and its viewer once they are enough."""
+        """The state with one more picture of a camera's empty room, and its viewer once there
+        are enough."""
         (view,) = (view for view in going.clip.views if view.number == number)
         empty = (*going.learns[number], picture)
         if not is_enough(empty, view, self._settings.silhouette.empty_s):

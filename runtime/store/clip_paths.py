@@ -1,4 +1,4 @@
-"""The clips that a command line names, and the run folder of each."""
+"""The clips on a command line, and the run folder of each."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -10,11 +10,11 @@ from runtime.terminal import warn
 
 
 class ClipsFailed(RuntimeError):
-    """Some clips could not be tracked; what was wrong with each was said before."""
+    """Some clips could not be tracked; each error was reported before."""
 
 
 def run_names(paths: Sequence[Path]) -> dict[str, Path]:
-    """What to track, by the name of its run folder: the clip folder's, or the settings file's.
+    """Paths to track, by the name of the run folder: the clip folder's, or the settings file's.
 
     Raises:
         ClipsFailed: When two would have one name.
@@ -32,7 +32,7 @@ def run_names(paths: Sequence[Path]) -> dict[str, Path]:
 
 
 def without_plain_files(paths: Sequence[Path], console: Console) -> list[Path]:
-    """The paths without what a pattern like clips/* catches too, such as calibration.json.
+    """The paths without other files that a pattern like clips/* matches, such as calibration.json.
 
     Raises:
         ClipsFailed: When nothing is left.

@@ -1,4 +1,4 @@
-"""Work spread over all cores of this machine, or over a Dask cluster."""
+"""Work distributed over all cores of this machine, or over a Dask cluster."""
 
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
@@ -8,7 +8,7 @@ Given = TypeVar("Given")
 Made = TypeVar("Made")
 
 CONNECT_S: Final = 10
-"""How long a cluster may take to answer."""
+"""Seconds to wait for a cluster's answer."""
 
 
 class ClusterError(RuntimeError):
@@ -17,11 +17,11 @@ class ClusterError(RuntimeError):
 
 @contextmanager
 def spread(dask: str) -> Iterator[None]:
-    """Whatever `made` does inside is done by all cores, or by a Dask cluster.
+    """Inside, `made` uses all cores, or a Dask cluster.
 
     Args:
         dask: Address of the cluster's scheduler, tcp://host:8786; "" for this machine alone. Its
-            workers need tritrack and must see the clips under the same paths.
+            workers need tritrack and the clips under the same paths.
 
     Raises:
         ClusterError: When it does not answer, or Dask is not installed.
@@ -52,7 +52,7 @@ def spread(dask: str) -> Iterator[None]:
 
 
 def made(work: Callable[[Given], Made], of: Iterable[Given]) -> Iterator[Made]:
-    """What a function of a module makes of each thing, in the order in which they are done."""
+    """Results of a module's function for each item, in the order of completion."""
     from joblib import Parallel, delayed
 
     parallel: Any = Parallel(return_as="generator_unordered", batch_size=1)

@@ -1,4 +1,4 @@
-"""A body for Foxglove: a stick figure in its 3-D panel, and numbers that its plots take by name.
+"""A body for Foxglove: a stick figure in its 3-D panel, and numbers by name for its plots.
 
 Source: Foxglove's message schemas (SceneUpdate, SceneEntity, LinePrimitive, SpherePrimitive). Its
 axes are x forward, y left, z up: a run's z, x and y.
@@ -32,9 +32,9 @@ _LINES: Final = [*LIMB_ENDS.tolist(), *_GIRDLES]
 
 def scene_of(body: Body) -> bytes:
     """A SceneUpdate as JSON: lines between a body's joints and to the ends of hands and feet, and
-    at the 15 joints balls coloured by confidence.
+    balls at the 15 joints coloured by confidence.
 
-    A body without a pose takes the figure away.
+    A body without a pose removes the figure.
     """
     if not body.joints_m:
         gone = {"timestamp": time_of(body.captured_s), "type": 0, "id": "body"}
@@ -88,7 +88,7 @@ def numbers_of(body: Body) -> bytes:
 
 
 def schemas() -> dict[str, bytes]:
-    """JSON Schema of both, without references: not all readers follow them."""
+    """JSON Schema of both, without references: not all readers resolve them."""
     xyz = _object(dict.fromkeys("xyz", _NUMBER))
     time = _object({"sec": {"type": "integer"}, "nsec": {"type": "integer"}})
     turn = _object(dict.fromkeys("xyzw", _NUMBER))
@@ -133,7 +133,7 @@ def schemas() -> dict[str, bytes]:
 
 
 def time_of(seconds: float) -> dict[str, int]:
-    """Seconds as Foxglove writes a time."""
+    """Seconds in Foxglove's form."""
     whole, nanoseconds = divmod(round(seconds * 1e9), 1_000_000_000)
     return {"sec": whole, "nsec": nanoseconds}
 

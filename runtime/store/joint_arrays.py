@@ -1,4 +1,4 @@
-"""Joints and extremities of a run: beside each other in memory, one behind the other on disk."""
+"""Joints and extremities of a run: separate in memory, concatenated on disk."""
 
 from typing import Any, Final
 
@@ -13,11 +13,11 @@ _BEHIND: Final = {
     "joints_px": ("extremities_px", 2),
     "confidence": ("extremities_confidence", 1),
 }
-"""Which array of the extremities stands behind which of the joints, along which axis."""
+"""Extremities' array that is appended to a joints' array, and the axis."""
 
 
 def on_disk(arrays: Arrays) -> Facts:
-    """The arrays of `poses.npz`: what its readers find by `joint_names` stands in one array."""
+    """The arrays of `poses.npz`: everything indexed by `joint_names` is in one array."""
     held = dict(arrays)
     if "extremities_m" not in held:
         return held
@@ -28,14 +28,15 @@ def on_disk(arrays: Arrays) -> Facts:
 
 
 def all_joints_m(arrays: Arrays) -> Any:
-    """Joints and extremities of a run, (n, 22, 3); the joints alone, (n, 15, 3), of one without."""
+    """Joints and extremities of a run, (n, 22, 3); joints alone, (n, 15, 3), where it has no
+    more."""
     further = arrays.get("extremities_m")
     joints_m = arrays["joints_m"]
     return joints_m if further is None else np.concatenate([joints_m, further], axis=1)
 
 
 def parted(held: Arrays) -> Arrays:
-    """The same as a run has them; as they are where they are not those of ALL_JOINT_NAMES."""
+    """The arrays split again; unchanged where they are not by ALL_JOINT_NAMES."""
     names = tuple(str(name) for name in np.ravel(held.get("joint_names", ())))
     if names != ALL_JOINT_NAMES:
         return held

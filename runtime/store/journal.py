@@ -1,9 +1,9 @@
-"""`journal.bin`: what a live run measures, on disk as it goes, for when its process does not end.
+"""`journal.bin`: a live run's measurements, written as they come, in case its process dies.
 
-Append-only: a head, then bodies, postures and rigs as they came, each with its length and sum. When
-the run has written its results the journal goes; where it stands, its run was cut short, or still
-goes on. It is not a recording (`recording.py`): that holds what viewers reported, is asked for, and
-is whole when the run is over.
+Append-only: a header, then bodies, postures and rigs as they came, each with its length and
+checksum. Once the run has written its results the journal is removed; a journal that exists means
+that its run was cut short, or is in progress. It is not a recording (`recording.py`): that holds
+the viewers' reports, is optional, and is complete when the run is over.
 """
 
 import os
@@ -26,22 +26,22 @@ from common.npz_file import Facts
 
 NAME: Final = "journal.bin"
 BEFORE: Final = "journal.{:06d}.bin"
-"""The parts before the newest."""
+"""Names of the parts before the newest."""
 MOST_BYTES: Final = 1 << 27
-"""Of each part."""
+"""First bytes of each part."""
 MOST_BODIES: Final = 54_000
-"""Of each part: an hour at 15 frames a second."""
+"""Records of each part: an hour at 15 Hz."""
 MOST_PARTS: Final = 12
-"""Before the newest: half a day at 15 frames a second; the oldest is given up then."""
+"""Number of older parts: half a day at 15 Hz; beyond, the oldest is removed."""
 ROW_BYTES: Final = 2_000
-"""Of a body in `poses.npz`: 1,812, as of this version. While that is written it stands there twice,
-beside the journal."""
+"""Bytes of a body in `poses.npz`: 1,812 in this version. While that is written the data exist
+twice there, beside the journal."""
 SYNC_S: Final = 5.0
-"""So often what was written is made to outlive a power cut; the process's own death it outlives
-at once."""
+"""Seconds between two syncs to disk, which survive a power cut; a crash of the process loses
+nothing anyway."""
 
 FRAME: Final = struct.Struct("<4scII")
-"""What goes before each record: magic, kind, bytes that follow, their CRC-32."""
+"""Header of each record: magic, kind, length, CRC-32."""
 MAGIC: Final = b"ttj1"
 HEAD: Final = b"h"
 KINDS: Final[dict[bytes, type[Message]]] = {b"b": Body, b"p": Posture, b"c": Cameras}
@@ -49,11 +49,11 @@ _MARKS: Final = {kind: mark for mark, kind in KINDS.items()}
 
 
 class Head(msgspec.Struct, frozen=True, kw_only=True):
-    """What the results of a run hold beside what was said."""
+    """Facts for a run's results beside the messages."""
 
     settings: Settings
     facts: Facts
-    """Of the summary, as far as they are known at the start."""
+    """The summary's facts that are known at the start."""
     protocol: int = PROTOCOL
 
 
@@ -63,7 +63,7 @@ class _Part(NamedTuple):
 
 
 class Journal:
-    """A journal that is being written; what the disk does not take is told, and the run goes on."""
+    """A journal that is being written; disk errors are reported, and the run goes on."""
 
     def __init__(
         self,
@@ -72,11 +72,12 @@ class Journal:
         most_bytes: int = MOST_BYTES,
         most_parts: int = MOST_PARTS,
     ) -> None:
-        """Begin one in a folder that is there; what is left there of an older run goes."""
+        """Begin one in an existing folder; an older run's journal is removed."""
         self.odd: list[str] = []
-        """What could not be written or was given up, a line each time that it begins."""
+        """Lines about records that could not be written or were removed, one each time that it
+        begins."""
         self.let_go = 0
-        """How many bodies were given up, the oldest."""
+        """Number of the oldest bodies that were removed."""
         self._folder = folder
         self._head = framed(HEAD, msgspec.msgpack.encode(head))
         self._most_bytes = most_bytes
@@ -90,7 +91,7 @@ class Journal:
         self.keep(())
 
     def keep(self, messages: Sequence[Message]) -> None:
-        """Write these too, whole or not at all; they are the system's when this returns."""
+        """Append records, all or none; when this returns the system has them."""
         new = b"".join(framed(_MARKS[type(one)], encode(one)) for one in messages)
         try:
             self._write(new, sum(isinstance(one, Body) for one in messages))
@@ -110,7 +111,7 @@ class Journal:
             self._file = None
 
     def remove(self) -> None:
-        """The results are written: it is not needed any more."""
+        """Remove it: the results are written."""
         self.close()
         remove(self._folder)
 
@@ -130,8 +131,8 @@ class Journal:
             self._sync_s = time.monotonic() + SYNC_S
 
     def _turn(self) -> None:
-        """Begin a new part; the oldest are given up where they are too many, or where the results,
-        written of all of them, would not find room."""
+        """Begin a new part; the oldest are removed where they are too many, or where the results
+        of all would not fit on the disk."""
         path = self._folder / BEFORE.format(self._turned)
         (self._folder / NAME).replace(path)
         self.close()
@@ -149,7 +150,7 @@ class Journal:
         return shutil.disk_usage(self._folder).free < 2 * ROW_BYTES * rows
 
     def _append(self, new: bytes) -> None:
-        """All of it; of a part that a full disk took nothing is left."""
+        """Write everything; on a full disk the incomplete part is removed."""
         assert self._file is not None
         done = 0
         try:
@@ -162,7 +163,7 @@ class Journal:
 
 
 def has_journal(folder: Path) -> bool:
-    """Whether a folder is that of a run that was cut short, or goes on."""
+    """Whether a folder belongs to a run that was cut short, or is in progress."""
     return (folder / NAME).is_file()
 
 
@@ -174,11 +175,11 @@ def parts_of(folder: Path) -> list[Path]:
 
 
 def remove(folder: Path) -> None:
-    """Take a folder's journal away, if there is one."""
+    """Remove a folder's journal, if any."""
     for path in parts_of(folder):
         path.unlink(missing_ok=True)
 
 
 def framed(mark: bytes, payload: bytes) -> bytes:
-    """A record: what goes before it, then what it holds."""
+    """A record: its header and its payload."""
     return FRAME.pack(MAGIC, mark, len(payload), zlib.crc32(payload)) + payload

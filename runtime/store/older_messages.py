@@ -1,4 +1,4 @@
-"""Messages and heads of files that 0.2 wrote, in the form of this version."""
+"""Messages and file headers of version 0.2, converted to this version."""
 
 from typing import Any, Final, TypeVar
 
@@ -11,22 +11,22 @@ from common.config.renamed_settings import in_new_words
 OLDER: Final = (10, 11)
 """Protocols of 0.2 and its last development versions."""
 SEEN_BY: Final = {"both": (True, True), "1": (True, False), "2": (False, True)}
-"""What 0.2 told of two cameras in one word."""
+"""0.2's words for the two cameras that show the person."""
 
 OF_THE_PERSON: Final = (
     *("silhouette", "box", "area_px", "cut", "landmarks", "vote", "upper_body_px"),
     *("thresholds_px", "measure", "refusal", "fit"),
 )
-"""Fields of a Report that an Observation has."""
+"""Fields of a Report that belong to an Observation."""
 OF_THE_SEARCH: Final = ("root_px", "angles_deg", "squatting", "score", "matches")
-"""Those that a Search has."""
+"""Those that belong to a Search."""
 
 Kind = TypeVar("Kind", bound=Message)
 Head = TypeVar("Head")
 
 
 def read_message(payload: bytes, kind: type[Kind]) -> Kind:
-    """A message of a file, of this version or of 0.2.
+    """A message from a file of this version or of 0.2.
 
     Raises:
         MalformedMessage: When it is neither.
@@ -41,7 +41,7 @@ def read_message(payload: bytes, kind: type[Kind]) -> Kind:
 
 
 def read_head(told: Any, kind: type[Head]) -> Head:
-    """What a file begins with, from plain values, with the settings in the words of now.
+    """The header of a file, from plain values, with settings renamed to this version.
 
     Raises:
         ValidationError: When it is none.
@@ -53,12 +53,12 @@ def read_head(told: Any, kind: type[Head]) -> Head:
 
 
 def seen_by(views: str) -> tuple[bool, bool]:
-    """Which of two cameras show the person, by the word of 0.2."""
+    """Which of two cameras show the person, from 0.2's word."""
     return SEEN_BY.get(views, (False, False))
 
 
 def _in_this_form(payload: bytes, kind: type[Message]) -> bytes | None:
-    """The bytes of a message of 0.2 as this version writes them; None: it is of another."""
+    """The bytes of a 0.2 message in this version's form; None: another version's."""
     try:
         told = msgspec.msgpack.decode(payload)
     except msgspec.DecodeError:
@@ -74,22 +74,22 @@ def _in_this_form(payload: bytes, kind: type[Message]) -> bytes | None:
 
 
 def _body_of(body: dict[str, Any]) -> dict[str, Any]:
-    """A Body, which did not say view by view who shows the person."""
+    """A Body, which did not hold view by view who shows the person."""
     agreement = body.get("agreement")
-    if isinstance(agreement, dict):  # the first of protocol 10 did not know how motions agree
+    if isinstance(agreement, dict):  # the first of protocol 10 lacked the motions' agreement
         agreement = {"motion_mm": 0.0, **agreement}
     return {**body, "seen": seen_by(str(body.get("views"))), "agreement": agreement}
 
 
 def _view_of(report: dict[str, Any]) -> dict[str, Any]:
-    """A Report, which had one person at most, and all of them in its own fields."""
+    """A Report, with at most one person, whose fields were its own."""
     view = {name: value for name, value in report.items() if name not in OF_THE_PERSON}
     view = {name: value for name, value in view.items() if name not in OF_THE_SEARCH}
     return {**view, "people": [_person_of(report)] if report.get("box") else []}
 
 
 def _person_of(report: dict[str, Any]) -> dict[str, Any]:
-    """Its person; what the viewer searched for stands together now, and `fit` is `stick`."""
+    """Its person; the search's results are a struct of their own now, and `fit` is `stick`."""
     own = {*OF_THE_PERSON, "width", "height"} & report.keys()
     person = {name: report[name] for name in own} | {"stick": report.get("fit")}
     person.pop("fit", None)

@@ -1,4 +1,4 @@
-"""Whether a run folder holds a run of something else, which nobody means to write over."""
+"""Whether a run folder holds a run of another source, which must not be overwritten."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -9,26 +9,26 @@ from common.npz_file import Facts
 from runtime.store.runs import RunError
 
 RUN_OF: Final = "run_of"
-"""What a summary calls the command and the footage of its run."""
+"""The summary's keys for a run's command and source."""
 OF_CAMERAS: Final = "processes"
-"""What the summary of a live run alone tells."""
+"""Keys that only a live run's summary has."""
 
 
 class OtherRun(RunError):
-    """A folder that holds the run of something else: the text says of what, and the cure."""
+    """A folder with a run of another source: the text names that and the cure."""
 
 
 class RunOf(NamedTuple):
-    """Of what a run is: not how it was made, for the same is done again with other settings."""
+    """The source of a run: its command and inputs, not its settings, which may change."""
 
     command: str
     """`track`, `single`, `live` or `replay`."""
     footage: tuple[str, ...]
-    """Its films, or the run that is replayed, whole paths; cameras by their numbers."""
+    """Its videos, or the replayed run, as absolute paths; cameras by number."""
 
     @property
     def facts(self) -> Facts:
-        """For its summary."""
+        """In the summary's form."""
         return {RUN_OF: {"command": self.command, "footage": [*self.footage]}}
 
     @property
@@ -39,19 +39,19 @@ class RunOf(NamedTuple):
 
 
 def run_of(command: str, sources: Sequence[str | int]) -> RunOf:
-    """The run of a command over files, or cameras by their numbers."""
+    """The source of a command's run over files, or cameras by number."""
     return RunOf(
         command, tuple(str(Path(one).resolve() if isinstance(one, str) else one) for one in sources)
     )
 
 
 def refuse_other(folder: Path, now: RunOf) -> None:
-    """See that a run which is there may be written over: nobody's, or one of the same.
+    """Refuse to overwrite a run, unless it is of the same source.
 
-    Runs that do not tell of what they are, of a version before this one, may.
+    Runs of older versions, which do not record their source, may be overwritten.
 
     Raises:
-        OtherRun: When it may not.
+        OtherRun: When it may not be overwritten.
     """
     other = other_than(folder, now)
     if other is not None:
@@ -62,13 +62,13 @@ def refuse_other(folder: Path, now: RunOf) -> None:
 
 
 def other_than(folder: Path, now: RunOf) -> RunOf | None:
-    """The run in a folder, where it is known to be of something else."""
+    """The run in a folder, where it is known to be of another source."""
     before = run_told(folder)
     return None if before in (None, now, RunOf(now.command, ())) else before
 
 
 def run_told(folder: Path) -> RunOf | None:
-    """Of what the run in a folder is; None where there is none, or it does not tell."""
+    """The source of the run in a folder; None where there is none, or none is recorded."""
     try:
         summary = json.loads((folder / "summary.json").read_text())
     except (OSError, ValueError):

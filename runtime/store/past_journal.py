@@ -1,4 +1,4 @@
-"""The journal of a run, read: while the run goes on, at its end, or after it was cut short."""
+"""A run's journal, read: during the run, at its end, or after it was cut short."""
 
 import mmap
 import shutil
@@ -19,12 +19,12 @@ from runtime.store.older_messages import read_head, read_message
 Kind = TypeVar("Kind", bound=Message)
 
 LOG: Final = "log.txt"
-"""What the processes of a run say, beside its journal."""
+"""Where the processes of a run write their log, beside its journal."""
 _MARKS: Final = {kind: mark for mark, kind in KINDS.items()}
 
 
 class Told(NamedTuple):
-    """What a journal holds, each in the order in which it was said."""
+    """The content of a journal, each kind in order."""
 
     head: Head
     bodies: Iterable[Body]
@@ -33,29 +33,29 @@ class Told(NamedTuple):
 
 
 class Journalled(Generic[Kind]):
-    """The messages of one kind in a folder's journal: read from disk as often as they are gone
-    through, so that they take no memory.
+    """The messages of one kind in a folder's journal: read from disk at each iteration, so that
+    they take no memory.
 
-    A record that was torn, and what stands behind it in its part, is not there.
+    A torn record, and what follows it in its part, is left out.
 
     Raises:
-        MalformedMessage: While it is gone through, where another version wrote it.
+        MalformedMessage: During iteration, where another version wrote it.
     """
 
     def __init__(self, folder: Path, kind: type[Kind]) -> None:
-        """Of a folder that may hold none."""
+        """Of a folder with or without a journal."""
         self._folder, self._kind = folder, kind
 
     def __iter__(self) -> Iterator[Kind]:
-        """In their order."""
+        """In order."""
         for mark, payload in _records(self._folder):
             if mark == _MARKS[self._kind]:
                 yield read_message(payload, self._kind)
 
 
 def read_journal(folder: Path) -> Told | None:
-    """What a run folder's journal holds; None where there is none, or no body in it, or it is of
-    another version."""
+    """The content of a run folder's journal; None where there is none, or no body in it, or it
+    is of another version."""
     bodies, postures = Journalled(folder, Body), Journalled(folder, Posture)
     try:
         heads = (payload for mark, payload in _records(folder) if mark == HEAD)
@@ -70,8 +70,8 @@ def read_journal(folder: Path) -> Told | None:
 
 
 def put_aside(folder: Path, aside: Path) -> bool:
-    """Move a folder's journal, if it holds a body, into a folder of its own, which is made, and
-    what its log says: of what the run died. The log itself may be open already, and stays.
+    """Move a folder's journal, if it holds a body, into a new folder of its own, with a copy of the
+    log, which shows why the run died. The log itself may be open already, and stays.
 
     Raises:
         OSError: When it cannot be moved.
@@ -89,10 +89,10 @@ def put_aside(folder: Path, aside: Path) -> bool:
 
 
 def _records(folder: Path) -> Iterator[tuple[bytes, bytes]]:
-    """Kind and payload of each record, of each part up to the first that is not whole."""
+    """Kind and payload of each record, of each part up to the first incomplete one."""
     for path in parts_of(folder):
         with path.open("rb") as file:
-            if path.stat().st_size:  # nothing cannot be mapped
+            if path.stat().st_size:  # an empty file cannot be mapped
                 with mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
                     yield from _records_of(data)
 

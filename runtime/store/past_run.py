@@ -1,4 +1,4 @@
-"""A run that was written before: its poses and its summary, checked while they are read."""
+"""A run of the past: its poses and its summary, checked while they are read."""
 
 import json
 import re
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from runtime.store.past_journal import Told
 
 MAX_BYTES: Final = 1 << 31
-"""No poses of a run are larger: twenty hours at 15 frames a second."""
+"""Upper bound of a run's poses, bytes: twenty hours at 15 Hz."""
 
 ROWS: Final[dict[str, tuple[str, tuple[int, ...]]]] = {
     "frame": ("iu", ()),
@@ -28,28 +28,28 @@ ROWS: Final[dict[str, tuple[str, tuple[int, ...]]]] = {
     "confidence": ("f", (len(JOINT_NAMES),)),
     "status": ("U", ()),
 }
-"""The arrays of `poses.npz` that are read: kind of entries and shape of a row."""
+"""The arrays read from `poses.npz`: type of entries and shape of a row."""
 CAMERA_ROWS: Final[dict[str, tuple[str, tuple[int, ...]]]] = {
     "joints_px": ("f", (len(JOINT_NAMES), 2)),
     "seen": ("b", ()),
     "score": ("f", ()),
 }
-"""The same of each camera: a row has one such entry a camera."""
+"""The same for arrays by camera: a row has one such entry per camera."""
 SINGLE_ROWS: Final[dict[str, tuple[str, tuple[int, ...]]]] = {
     "orientation": ("U", ()),
     "orientation_confidence": ("f", ()),
     "depth_confidence": ("f", (len(LIMBS),)),
 }
-"""What a run of a single view has beside them."""
+"""Additional arrays of a run with a single view."""
 EXTREMITY_ROWS: Final[dict[str, tuple[str, tuple[int, ...]]]] = {
     "extremities_m": ("f", (len(EXTREMITY_NAMES), 3)),
     "extremities_confidence": ("f", (len(EXTREMITY_NAMES),)),
 }
-"""What the file has behind the 15 joints; runs that were written before it lack them."""
+"""Arrays of the extremities; older runs lack them."""
 EXTREMITY_CAMERA_ROWS: Final[dict[str, tuple[str, tuple[int, ...]]]] = {
     "extremities_px": ("f", (len(EXTREMITY_NAMES), 2)),
 }
-"""The same of each camera."""
+"""The same by camera."""
 CUT_SHORT: Final = "the run was cut short, or goes on: what it measured is read from its journal"
 
 
@@ -58,27 +58,27 @@ class PastRunError(ValueError):
 
 
 class PastRun(NamedTuple):
-    """What a run left behind."""
+    """The results of a run."""
 
     folder: Path
     poses: Arrays
-    """Arrays by name: those of ROWS and CAMERA_ROWS, of the extremities where it has them, what
-    else the file holds. `camera_names` are the C cameras that rows have entries of."""
+    """Arrays by name: those of ROWS and CAMERA_ROWS, of the extremities where it has them, and
+    others in the file. `camera_names` are the C cameras of the entries by camera."""
     summary: Facts
 
 
 def is_run(folder: Path) -> bool:
-    """Whether a folder is that of a run, whole or cut short."""
+    """Whether a folder holds a run, complete or cut short."""
     from runtime.store.journal import has_journal
 
     return (folder / "poses.npz").is_file() or has_journal(folder)
 
 
 def open_run(folder: Path) -> PastRun:
-    """Read a run folder; of a run that was cut short, what it wrote as it went.
+    """Read a run folder; for a run that was cut short, its journal.
 
     Raises:
-        PastRunError: When it is none, was damaged, or a newer version wrote it.
+        PastRunError: When it is no run folder, is damaged, or is of a newer version.
     """
     if not folder.is_dir():
         raise PastRunError(f"there is no run folder {folder}: name one that `tritrack track` wrote")
@@ -109,7 +109,7 @@ def open_run(folder: Path) -> PastRun:
 
 
 def _refuse_a_newer_version(folder: Path, summary: object) -> None:
-    """What a later minor version writes may mean something else; a patch changes no meaning."""
+    """A later minor version may change meanings; a patch does not."""
     told = summary.get("versions") if isinstance(summary, dict) else None
     theirs = str(told.get("tritrack")) if isinstance(told, dict) else ""
     ours = version("tritrack")
@@ -121,7 +121,7 @@ def _refuse_a_newer_version(folder: Path, summary: object) -> None:
 
 
 def _minor(told: str) -> tuple[int, ...]:
-    """The first two numbers of a version, which come before all others where it is none."""
+    """The first two numbers of a version; an invalid one sorts before all others."""
     found = re.match(r"(\d+)\.(\d+)", told)
     return tuple(map(int, found.groups())) if found else ()
 
@@ -155,7 +155,7 @@ def _cut_short(folder: Path, told: "Told") -> PastRun:
 
 
 def _completed(poses: Arrays) -> Arrays:
-    """The arrays with what 0.2 did not write: one person, two cameras, and which saw whom."""
+    """The arrays with those that 0.2 lacked: one person, two cameras, and who is seen."""
     if "camera_names" in poses or "views" not in poses:
         return poses
     from runtime.store.older_messages import seen_by

@@ -23,12 +23,12 @@ Laid = Callable[[Arrays], Arrays]
 def poses(bodies: Iterable[Body], cameras: Sequence[str] = ()) -> Arrays:
     """The arrays of a run; a row without a pose is NaN.
 
-    They are gone through twice, some thousand at once. What `poses.npz` holds of each joint,
-    `on_disk` lays together: the 15, then the extremities.
+    It iterates twice over the bodies, some thousand at once. Arrays of joints and extremities are
+    separate here; `on_disk` concatenates them for `poses.npz`.
 
     Args:
         bodies: Of the run.
-        cameras: Names of the rig's cameras; cam1, cam2 ... where they have none.
+        cameras: Names of the rig's cameras; default cam1, cam2 ...
     """
     told, coming = _told_by(bodies, cameras), iter(bodies)
     found = [_arrays(list(islice(coming, AT_ONCE)), told)]
@@ -47,12 +47,12 @@ def mapped_poses(
     laid: Laid = lambda arrays: arrays,
     cameras: Sequence[str] = (),
 ) -> Iterator[Arrays]:
-    """The same of however many bodies; of many the arrays are mapped from files, then removed.
+    """The same for any number of bodies; for many the arrays are mapped from temporary files.
 
     Args:
-        bodies: Are gone through twice.
+        bodies: Iterated twice.
         folder: For the files.
-        laid: Lays arrays together, `on_disk`.
+        laid: Combines arrays, `on_disk`.
         cameras: As for `poses`.
     """
     told, coming = _told_by(bodies, cameras), iter(bodies)
@@ -77,14 +77,14 @@ def mapped_poses(
 
 
 class _Told(NamedTuple):
-    """Of what a run's bodies tell beside their joints."""
+    """The arrays other than joints."""
 
     extremities: bool
-    """All that have joints."""
+    """All bodies with joints."""
     liftings: bool
-    """Any."""
+    """Any bodies."""
     cameras: tuple[str, ...]
-    """Names of the rig's."""
+    """Names of the rig's cameras."""
 
 
 def _told_by(bodies: Iterable[Body], names: Sequence[str]) -> _Told:
@@ -132,7 +132,7 @@ def _arrays(bodies: Sequence[Body], told: _Told) -> Arrays:
 
 
 def _by_camera(bodies: Sequence[Body], cameras: int) -> Arrays:
-    """What each camera tells of the body; of two also in one word."""
+    """The arrays by camera; for two cameras also the word for both."""
     n = len(bodies)
     words = {"views": np.array([body.views for body in bodies], "U4")} if cameras == 2 else {}
     return {
@@ -155,7 +155,7 @@ def _extremities(bodies: Sequence[Body], rows: Callable[..., Any], cameras: int)
 
 
 def _liftings(told: Sequence[Lifting | None]) -> Arrays:
-    """What one view alone decided by itself, where it did: the arrays that retouching needs."""
+    """Decisions of a single view, where there are any: the arrays that retouching needs."""
     nothing = Lifting("", 1.0, ())
     each = [one or nothing for one in told]
 

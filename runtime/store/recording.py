@@ -1,8 +1,8 @@
-"""`recording.mcap`: all that a run's viewers reported and what was made of it, to do it again.
+"""`recording.mcap`: a run's reports and results, for a replay.
 
-One MCAP file, readable by any MCAP library: our messages as MessagePack, as they went over the bus
+One MCAP file, readable by any MCAP library: our messages as MessagePack, as sent over the bus
 (topics `/report/1`, `/body` ...), each body once more for Foxglove (`/scene`, `/numbers`), and as
-metadata settings, rig, body and versions. Outlines and joints, no picture.
+metadata settings, rig, body and versions. It holds silhouettes and joints, no picture.
 """
 
 import struct
@@ -36,9 +36,9 @@ from runtime.store.runs import RunError, unwritable, versions
 
 NAME: Final = "recording.mcap"
 TORN: Final = ".recording.*.mcap"
-"""What is left of one in the folder of a run that was killed."""
+"""Suffix of an incomplete recording in the folder of a run that was killed."""
 CHUNK_BYTES: Final = 1 << 17
-"""So much is written at once, half a second to two of a run: more is not lost when it is killed."""
+"""Bytes written at once, half a second to two of a run: at most that is lost when it is killed."""
 KINDS: Final[dict[str, type[Message]]] = {
     **{f"/report/{number}": View for number in range(1, MOST_VIEWS + 1)},
     "/body": Body,
@@ -55,21 +55,21 @@ class RecordingError(ValueError):
 
 
 class Head(msgspec.Struct, frozen=True, kw_only=True):
-    """What an integrator has to know before the first report."""
+    """What an integrator must know before the first report."""
 
     name: str
     settings: Settings
     period_s: float
     alone: bool
-    """One viewer is all that the run has."""
+    """The run has a single viewer."""
     rig: Rig | None
-    """None: it is assumed when somebody is seen."""
+    """None: it is assumed when a person is seen."""
     scale_source: ScaleSource | None = None
-    """Where the rig is from; None: it is calibrated, if there is one."""
+    """Source of the rig; None: it is calibrated, if there is one."""
     by_person: bool = False
-    """The person tells the rig while the run goes on."""
+    """The rig comes from the person during the run."""
     body: Bdp | None
-    """As measured before the run; None: it was not."""
+    """As measured before the run; None: it was not measured."""
     times: FrameTimes | None = None
     """When camera 1 takes its frames; None where it is no part of the run."""
     cameras: tuple[str, ...] = ()
@@ -79,11 +79,11 @@ class Head(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Recording(NamedTuple):
-    """What a recording holds, each in the order in which it was said."""
+    """The content of a recording, each kind in order."""
 
     head: Head
     reports: tuple[list[View], ...]
-    """Of each viewer that the rig may have, in their order."""
+    """For each viewer of the rig, in their order."""
     bodies: list[Body]
     postures: list[Posture]
     cameras: list[Cameras]
@@ -91,12 +91,13 @@ class Recording(NamedTuple):
 
 @contextmanager
 def recording_to(folder: Path, head: Head) -> Iterator[Keep]:
-    """A function that keeps a message; the file has its name when all is said, and is written as
-    it grows.
+    """A function that records a message; the file is written as it grows and gets its name at the
+    end.
 
     Raises:
         RecordingError: Without the library mcap.
-        RunError: When the file cannot be written: it is gone then, what was measured has room.
+        RunError: When the file cannot be written: it is removed then, to leave room for the
+        results.
     """
     library = _library()
     with ExitStack() as doors:
@@ -115,7 +116,7 @@ def recording_to(folder: Path, head: Head) -> Iterator[Keep]:
             writer.finish()
             doors.close()
         except OSError as error:
-            with suppress(OSError):  # it has not taken what was left to be written, nor does it now
+            with suppress(OSError):  # the disk could not take the rest, and cannot now
                 file.close()
             raise RunError(
                 f"{folder / NAME} could not be written to its end ({error.strerror}) and is gone, "
@@ -124,10 +125,10 @@ def recording_to(folder: Path, head: Head) -> Iterator[Keep]:
 
 
 def read_recording(folder: Path) -> Recording:
-    """Read the recording of a run folder; of a run that was killed, as far as it was written.
+    """Read the recording of a run folder; for a run that was killed, its incomplete one.
 
     Raises:
-        RecordingError: When there is none, or it was damaged, or another version wrote it.
+        RecordingError: When there is none, or it is damaged, or of another version.
     """
     library = _library()
     if not folder.is_dir():
@@ -159,12 +160,12 @@ def read_recording(folder: Path) -> Recording:
 
 
 def torn_recordings(folder: Path) -> list[Path]:
-    """What runs that were killed left of their recordings in a folder, the newest first."""
+    """Incomplete recordings in a folder, of runs that were killed, the newest first."""
     return sorted(folder.glob(TORN), key=lambda path: path.stat().st_mtime_ns, reverse=True)
 
 
 def _said(reader: Any) -> Iterator[Head | Message]:
-    """What a recording holds of ours, in its order."""
+    """Our messages in a recording, in order."""
     topics: dict[int, str] = {}
     for record in reader.records:
         match type(record).__name__:
@@ -198,13 +199,13 @@ def _keeper(writer: Any, file: IO[bytes]) -> Keep:
         if isinstance(message, Body):
             add(scene, foxglove_scene.scene_of(message))
             add(numbers, foxglove_scene.numbers_of(message))
-        file.flush()  # nothing, but where a chunk is full
+        file.flush()  # nothing, except where a chunk is full
 
     return keep
 
 
 def topic_of(message: Message) -> str:
-    """Where a recording has a message."""
+    """Place of a message in a recording."""
     if isinstance(message, View):
         return f"/report/{message.viewer}"
     return f"/{type(message).__name__.lower()}"
@@ -214,7 +215,7 @@ class _Library(NamedTuple):
     Writer: Any
     StreamReader: Any
     errors: tuple[type[Exception], ...]
-    """What reading raises of a damaged file."""
+    """Exceptions of reading a damaged file."""
 
 
 def _library() -> _Library:
@@ -231,7 +232,7 @@ def _library() -> _Library:
 
 
 def refuse_without_library() -> None:
-    """Say before a run that it cannot be recorded.
+    """Check before a run that it can be recorded.
 
     Raises:
         RecordingError: Without the library mcap.

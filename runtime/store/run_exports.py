@@ -1,4 +1,4 @@
-"""What is exported beside a run: of its poses, and gone when they are written anew."""
+"""Exports in a run folder: made from its poses, and removed when these are rewritten."""
 
 from pathlib import Path
 from typing import Final, Literal
@@ -13,13 +13,13 @@ OWN_NAMES: Final[dict[Format, str]] = {
     "c3d": "markers.c3d",
     "csv": "poses.csv",
 }
-"""The file in the run folder where no other is asked for."""
+"""Default file name in the run folder, by format."""
 EXPORTS: Final = (*OWN_NAMES.values(), "body.osim")
-"""With the model that goes with the motion of OpenSim."""
+"""Including the model that belongs to OpenSim's motion."""
 
 
 def remove_exports(folder: Path) -> None:
-    """Remove what was exported of the poses that stood in a run folder before.
+    """Remove the exports of the run folder's previous poses.
 
     Raises:
         OSError: When a file cannot be removed.

@@ -24,13 +24,13 @@ from runtime.terminal import json_text
 VERSIONS_OF: Final = ("tritrack", "numpy", "opencv-python-headless", "numba", "eclipse-zenoh")
 
 BELIEVED: Final[tuple[Status, ...]] = ("measuring", "tracking")
-"""Of a body's status: what the views show bears it out. A predicted body was borne out a moment
+"""Statuses of a believed body: the views confirm it. A predicted body was confirmed a moment
 ago: it has a pose, with confidence 0."""
 
 NOBODY_SEEN: Final = (
     "nobody was seen: the person must move, and be a sixth of the picture high at least"
 )
-"""Said of a run no frame of which shows anybody."""
+"""The warning for a run without a person in any frame."""
 
 
 class RunError(RuntimeError):
@@ -43,19 +43,19 @@ def write_run(
     settings: Settings,
     facts: Facts,
 ) -> None:
-    """Write `poses.npz` and `summary.json`, each whole or not at all.
+    """Write `poses.npz` and `summary.json`, each completely or not at all.
 
-    What was exported of a run that stood there before is removed: it is of other poses.
+    Exports of a previous run are removed: they are of other poses.
 
     Args:
-        folder: Made where it is not there.
+        folder: Created where missing.
         bodies: In the order of time; an instant that camera 1 missed (frame -1) gets no row.
-        settings: As resolved for the run.
-        facts: What else the summary tells: cameras (their names), seconds, scale_source,
-            warnings ...
+        settings: The resolved settings of the run.
+        facts: Further facts for the summary: cameras (their names), seconds, scale_source, warnings
+            ...
 
     Raises:
-        RunError: When the folder or a file cannot be written: no space, no right.
+        RunError: When the folder or a file cannot be written: no space, no permission.
     """
     rows = Rows(bodies)
     try:
@@ -73,14 +73,14 @@ def write_run(
 
 
 class Rows:
-    """Those bodies that get a row: of the instants that have a frame's number."""
+    """The bodies that get a row: of instants with a frame number."""
 
     def __init__(self, bodies: Iterable[Body]) -> None:
-        """Of these, which may be gone through more than once."""
+        """From these, which may be iterated more than once."""
         self._bodies = bodies
 
     def __iter__(self) -> Iterator[Body]:
-        """In their order."""
+        """In order."""
         return (body for body in self._bodies if body.frame >= 0)
 
 
@@ -88,8 +88,8 @@ def write_postures(folder: Path, postures: Iterable[Posture], performed: str) ->
     """Write `posture.json`: performances, each frame's name and scores, the clip's name.
 
     Args:
-        folder: Made where it is not there.
-        postures: In the order of time; are gone through twice, and need not fit into memory.
+        folder: Created where missing.
+        postures: In the order of time; iterated twice, and need not fit into memory.
         performed: The clip's posture.
 
     Raises:
@@ -128,7 +128,7 @@ def _row_of(posture: Posture) -> Facts:
 
 
 def believed(bodies: Iterable[Body]) -> float | None:
-    """Share of the frames with a person in which the body is believed; None where nobody is."""
+    """Share of the frames with a person in which the body is believed; None without a person."""
     return _believed(Counter(body.status for body in bodies))
 
 
@@ -138,7 +138,7 @@ def _believed(often: Counter[Status]) -> float | None:
 
 
 def summary_of(bodies: Iterable[Body], settings: Settings, facts: Facts) -> Facts:
-    """What `summary.json` tells of these bodies, with the facts given."""
+    """The summary of these bodies, with the given facts."""
     often: Counter[Status] = Counter()
     matches: list[int] = []
     last: Body | None = None
@@ -161,13 +161,13 @@ def summary_of(bodies: Iterable[Body], settings: Settings, facts: Facts) -> Fact
 
 @cache
 def versions() -> dict[str, str]:
-    """Of what a run depends on; looking them up takes as long as ten frames."""
+    """Versions that a run depends on; looking them up takes as long as ten frames."""
     told = {name: version(name) for name in VERSIONS_OF}
     return told | {"python": platform.python_version()}
 
 
 def unwritable(folder: Path, error: OSError) -> RunError:
-    """What is said of a run folder that takes no more."""
+    """The message for a run folder that cannot be written."""
     return RunError(unwritten(folder, error, "name another --out"))
 
 

@@ -1,1 +1,1 @@
-"""Runs over long films: what is done lies on disk, and they go on where they were cut short."""
+"""Runs over long videos: intermediate results on disk, from which an interrupted run resumes."""

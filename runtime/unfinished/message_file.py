@@ -1,4 +1,4 @@
-"""Messages on disk, in the order in which they came: a sequence that takes no memory.
+"""Messages in a file, in the order in which they came: a sequence that takes no memory.
 
 The records are those of the journal (`runtime/store/journal.py`).
 """
@@ -28,11 +28,11 @@ _DECODERS: Final[dict[bytes, msgspec.msgpack.Decoder[Any]]] = {
     mark: msgspec.msgpack.Decoder(kind) for kind, mark in MARKS.items()
 }
 AT_ONCE: Final = 1 << 18
-"""Bytes that are written, and read, at once."""
+"""Bytes written, and read, at once."""
 
 
 class Place(msgspec.Struct, frozen=True):
-    """How far a file had come."""
+    """Extent of a file."""
 
     messages: int
     size: int
@@ -40,15 +40,15 @@ class Place(msgspec.Struct, frozen=True):
 
 
 class Torn(ValueError):
-    """A file that does not hold what it held."""
+    """A damaged or shortened file."""
 
 
 @contextmanager
 def writing(folder: Path) -> Iterator[None]:
-    """Tell of a folder that cannot be written.
+    """The error of a folder that cannot be written.
 
     Raises:
-        RunError: Instead of any OSError; the text says why.
+        RunError: In place of any OSError; the text says why.
     """
     try:
         yield
@@ -57,19 +57,19 @@ def writing(folder: Path) -> Iterator[None]:
 
 
 class MessageFile(Sequence[Kind], Generic[Kind]):
-    """Messages that are appended, and read as often as one likes."""
+    """Messages that are appended, and read any number of times."""
 
     def __init__(self, path: Path, head: bytes = b"", place: Place | None = None) -> None:
-        """Begin a file, or go on with one from a place: what stands behind it goes.
+        """Begin a file, or continue one from a place: what follows it is removed.
 
         Args:
-            path: Of the file, in a folder that is there.
-            head: The payload of its first record; of none where it is empty.
-            place: None: it begins anew.
+            path: A file in an existing folder.
+            head: Payload of its first record; no record where it is empty.
+            place: None: a new file.
 
         Raises:
-            Torn: When the file does not come so far, or is damaged before it.
-            RunError: When it cannot be written; also when messages are appended or read.
+            Torn: When the file is shorter, or damaged before that place.
+            RunError: When it cannot be written; also raised when messages are appended or read.
         """
         self._path = path
         self._first = framed(HEAD, head) if head else b""
@@ -86,7 +86,7 @@ class MessageFile(Sequence[Kind], Generic[Kind]):
             self._size = self._file.write(self._first)
 
     def append(self, message: Kind) -> None:
-        """One message more."""
+        """Append a message."""
         record = framed(MARKS[type(message)], encode(message))
         self._starts.append(self._size)
         with self._writing():
@@ -94,7 +94,7 @@ class MessageFile(Sequence[Kind], Generic[Kind]):
         self._size += len(record)
 
     def clear(self) -> None:
-        """Forget all messages."""
+        """Remove all messages."""
         with self._writing():
             self._file.flush()
             self._file.truncate(len(self._first))
@@ -103,23 +103,23 @@ class MessageFile(Sequence[Kind], Generic[Kind]):
         del self._starts[:]
 
     def synced(self) -> Place:
-        """How far it has come; so far it outlives a power cut."""
+        """Its extent; up to there it survives a power cut."""
         with self._writing():
             self._file.flush()
             os.fsync(self._file.fileno())
         return Place(len(self), self._size)
 
     def close(self) -> None:
-        """Append no more; it can be read on. What the disk has not taken was told."""
+        """Append no more; it remains readable. Write errors were raised before."""
         with suppress(OSError):
             self._file.close()
 
     def __len__(self) -> int:
-        """How many messages."""
+        """Number of messages."""
         return len(self._starts)
 
     def __iter__(self) -> Iterator[Kind]:
-        """All of them, in their order."""
+        """All of them, in order."""
         return self._read_from(0)
 
     @overload
@@ -148,7 +148,7 @@ class MessageFile(Sequence[Kind], Generic[Kind]):
         return writing(self._path.parent)
 
     def _scanned(self, place: Place) -> int:
-        """Find the records before a place; its size."""
+        """Index the records before a place; its size."""
         size = 0
         try:
             with self._path.open("rb", AT_ONCE) as file:
@@ -159,7 +159,7 @@ class MessageFile(Sequence[Kind], Generic[Kind]):
                     if len(payload) < length or not known or zlib.crc32(payload) != total:
                         break
                     if mark != HEAD:
-                        _DECODERS[mark].decode(payload)  # the sum is not over the mark
+                        _DECODERS[mark].decode(payload)  # the checksum is not over the magic
                         self._starts.append(size)
                     size += FRAME.size + length
         except Exception as error:

@@ -1,4 +1,4 @@
-"""Whether a run begins, goes on or is over: what its folder holds of it, and what is wanted."""
+"""Whether a run begins, resumes or is over, from its folder's content and the request."""
 
 import json
 from collections.abc import Iterator, Mapping
@@ -27,11 +27,11 @@ from runtime.unfinished.unfinished_run import (
 from runtime.unfinished.work import InMemory, Work
 
 MADE_OF: Final = "made_of"
-"""What the summary of a run calls the word for all that it depends on."""
+"""The summary's key for the digest of all that a run depends on."""
 
 
 class Begun(NamedTuple):
-    """A run that begins, or goes on."""
+    """A run that begins or resumes."""
 
     work: Work
     facts: Facts
@@ -39,19 +39,19 @@ class Begun(NamedTuple):
 
 
 class Wanted(NamedTuple):
-    """What is to be run."""
+    """The requested run."""
 
     folder: Path
-    """Of the run."""
+    """Its settings."""
     settings: Settings
     told: Mapping[str, object]
-    """What else the command says of it."""
+    """Further facts from the command."""
     resume: bool = False
-    """It goes on where it was left."""
+    """It resumes where it was interrupted."""
 
 
 def done_before(wanted: Wanted, console: Console) -> Facts | None:
-    """The summary of the same run, where it is to be resumed and is over already.
+    """The summary of the same run, where it shall resume and is over already.
 
     Raises:
         ClipError: When a file is missing.
@@ -72,13 +72,13 @@ def done_before(wanted: Wanted, console: Console) -> Facts | None:
 
 @contextmanager
 def resumable(wanted: Wanted, console: Console) -> Iterator[Begun]:
-    """The work of a run, as far as it had come; what it keeps goes when its results are written.
+    """The work of a run, as far as done; it is removed when the results are written.
 
-    Where the run is stopped it stays, and that is said. Where its clip cannot be used it goes.
+    When the run is stopped it stays, which is reported. When its clip cannot be used it is removed.
 
     Raises:
         ClipError: When a file is missing.
-        CannotResume: When what is there is of another run, or damaged, or cannot be gone on with.
+        CannotResume: When the existing work is of another run, damaged, or unusable.
         RunError: When the folder cannot be written.
     """
     if not _lasts(wanted.settings):
@@ -109,13 +109,13 @@ def resumable(wanted: Wanted, console: Console) -> Iterator[Begun]:
         kept = f"{wanted.folder.name}: what is done is kept"
         if (wanted.folder / FOLDER / STATE).is_file():
             warn(console, f"{kept}: --resume goes on with it")
-        elif isinstance(error, RunError | OSError):  # the disk takes no more, its state neither
+        elif isinstance(error, RunError | OSError):  # no room for the state either
             warn(console, f"{kept}, but its state did not fit: --resume begins anew")
         raise
     run.remove()
 
 
 def _lasts(settings: Settings) -> bool:
-    """Whether the same is seen when it is looked at again."""
+    """Whether a second look would give the same result."""
     of_files = all(isinstance(view.source, str) for view in footage_of(settings))
     return of_files and settings.landmarks != "mediapipe"

@@ -1,4 +1,4 @@
-"""Of what a run is: its settings, the files that it reads, and the program itself, as digests."""
+"""Identity of a run: digests of its settings, its input files, and the program itself."""
 
 import hashlib
 import sys
@@ -16,21 +16,21 @@ from common.video.clip_sources import ClipError, companions_folder, footage_of
 from common.video.clips import find_calibration
 
 Identity = dict[str, str]
-"""A digest of each thing that a run depends on, by what a message calls it."""
+"""A digest of everything that a run depends on, by its name in messages."""
 
 MODELS: Final = ("*.npz", "*.onnx")
 LIBRARIES: Final = ("numpy", "numba", "opencv-python-headless", "scipy", "onnxruntime")
-"""What changes what is tracked."""
+"""Settings that change the tracking."""
 SOURCES: Final = digest_of(ROOT)
-"""Of the sources as this process began: taken on import, before an edit can come between."""
+"""Digest of the sources when this process began: taken at import, before any edit."""
 
 
 def identity_of(settings: Settings, told: Mapping[str, object]) -> Identity:
-    """What a run over a recorded clip depends on; where its files lie is no part of it.
+    """Dependencies of a run over a recorded clip; the place of its files does not count.
 
     Args:
-        settings: As resolved for the run.
-        told: What else its command says of it, by name.
+        settings: The resolved settings of the run.
+        told: Further facts from its command, by name.
 
     Raises:
         ClipError: When the clip has no files, or the settings name a camera.
@@ -43,23 +43,23 @@ def identity_of(settings: Settings, told: Mapping[str, object]) -> Identity:
             with path.open("rb") as file:
                 found[path.name] = hashlib.file_digest(file, "sha256").hexdigest()
         except OSError:
-            found[path.name] = ""  # who opens the clip says it better
+            found[path.name] = ""  # opening the clip gives a better message
     return found
 
 
 def differing(before: Identity, now: Identity) -> list[str]:
-    """What is not what it was, by name."""
+    """Names of the changed items."""
     names = [*before, *(name for name in now if name not in before)]
     return [name for name in names if before.get(name) != now.get(name)]
 
 
 def word_of(identity: Identity) -> str:
-    """All of it in one word."""
+    """One digest of everything."""
     return _digest(identity)[:32]
 
 
 def tracker_id() -> str:
-    """A word for the tracker itself: another after any change of our code, models or libraries."""
+    """A digest of the tracker itself: it changes with our code, models and libraries."""
     digest = hashlib.sha256(SOURCES.encode())
     for package in PACKAGES:
         models = (path for kind in MODELS for path in (ROOT / package).rglob(kind))
@@ -72,7 +72,7 @@ def tracker_id() -> str:
 
 
 def files_of(settings: Settings) -> Iterator[Path]:
-    """All that is read of a clip, in a fixed order."""
+    """All files read of a clip, in a fixed order."""
     named = footage_of(settings)
     for view in named:
         if isinstance(view.source, int):

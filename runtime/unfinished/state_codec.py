@@ -1,6 +1,6 @@
-"""A state as bytes, and back to the last bit: named tuples, structs, arrays and plain values.
+"""A state as bytes, restored bit for bit: named tuples, structs, arrays and plain values.
 
-What is read is checked against the annotations of its type; nothing in it is ever run.
+What is read is checked against the annotations of its type and never executed.
 """
 
 from typing import Any, TypeVar
@@ -12,23 +12,23 @@ Value = TypeVar("Value")
 
 
 class UnreadableState(ValueError):
-    """Bytes that are no such state."""
+    """Bytes that are no valid state."""
 
 
 def packed(value: object) -> bytes:
     """A state as bytes.
 
     Raises:
-        TypeError: When something in it could not be read back as it is.
+        TypeError: When something in it could not be restored exactly.
     """
     return msgspec.msgpack.encode(value, enc_hook=_plain)
 
 
 def unpacked(data: bytes, kind: type[Value]) -> Value:
-    """The state that `packed` was given.
+    """The state given to `packed`.
 
     Raises:
-        UnreadableState: When it is of another kind.
+        UnreadableState: When it is of another type.
     """
     try:
         return msgspec.msgpack.Decoder(kind, dec_hook=_array).decode(data)
@@ -45,6 +45,6 @@ def _plain(value: Any) -> Any:
 
 
 def _array(_kind: type, told: Any) -> Any:
-    """An array from what `_plain` made of it, in memory of its own."""
+    """An array from the result of `_plain`, with its own memory."""
     dtype, shape, content = told
     return np.frombuffer(content, np.dtype(dtype)).reshape(shape).copy()

@@ -1,7 +1,7 @@
-"""What a run over a long film leaves on disk while it goes on, so that it can go on after a stop.
+"""Intermediate results of a run over a long video, on disk, for resuming.
 
-Bodies are the records of the journal, so a run that was cut short is read like one that ended.
-ThreadWorker them lie its other messages and, now and then anew, the state of its stages.
+Bodies are the records of the journal, so a run that was cut short is read like a complete one.
+Beside them are its other messages and, rewritten from time to time, the state of its stages.
 """
 
 import contextlib
@@ -22,7 +22,7 @@ from runtime.unfinished.run_identity import Identity, differing
 from runtime.unfinished.state_codec import UnreadableState, packed, unpacked
 
 SAVES_S: Final = 10.0
-"""So often the state is written: no more than this is done twice."""
+"""Seconds between two saved states: at most that much work is repeated."""
 FOLDER: Final = "unfinished"
 STATE: Final = "state.bin"
 BODIES: Final = "bodies"
@@ -32,23 +32,23 @@ State = TypeVar("State")
 
 
 class CannotResume(RunError):
-    """A run that cannot go on: the text says why, and how to begin anew."""
+    """A run that cannot resume: the text names the cause, and how to begin again."""
 
 
 class Saved(msgspec.Struct, frozen=True):
-    """How far a run had come."""
+    """Progress of a run."""
 
     identity: Identity
     stage: str
-    """Which of its passes it was in."""
+    """The present pass."""
     places: dict[str, Place]
-    """How far each of its files of messages had come."""
+    """Extent of each of its message files."""
     state: bytes
-    """Of the stages, as `state_codec` has it."""
+    """States of the stages, from `state_codec`."""
 
 
 class UnfinishedRun:
-    """The files of a run that goes on."""
+    """The files of a run in progress."""
 
     def __init__(
         self,
@@ -57,13 +57,13 @@ class UnfinishedRun:
         head: journal.Head,
         saved: Saved | None = None,
     ) -> None:
-        """Begin one in a run folder, or go on with what was saved there.
+        """Begin them in a run folder, or continue from the saved ones.
 
         Args:
-            folder: Of the run.
-            identity: Of what it is.
-            head: Of its journal.
-            saved: From `saved_in`; None: what is left there of an older run goes.
+            folder: The run's folder.
+            identity: The run's identity.
+            head: Header of its journal.
+            saved: From `saved_in`; None: remains of an older run are removed.
 
         Raises:
             RunError: When the folder cannot be written.
@@ -78,14 +78,14 @@ class UnfinishedRun:
 
     @property
     def due(self) -> bool:
-        """Whether the state is to be saved now."""
+        """Whether the state is due to be saved."""
         return time.monotonic() >= self._due_s
 
     def messages(self, name: str) -> MessageFile[Any]:
-        """A file of messages, as far as it had come; those of BODIES are the journal's.
+        """A message file, up to its saved extent; that of BODIES is the journal.
 
         Raises:
-            CannotResume: When it was damaged.
+            CannotResume: When it is damaged.
             RunError: When it cannot be written.
         """
         is_journal = name == BODIES
@@ -101,10 +101,10 @@ class UnfinishedRun:
         return self._files[name]
 
     def resumed(self, stage: str, kind: type[State]) -> State | None:
-        """The state in which a stage was left; None where it was not begun, or is over.
+        """The saved state of a stage; None where it was not begun, or is over.
 
         Raises:
-            CannotResume: When it was damaged.
+            CannotResume: When it is damaged.
         """
         if self._saved is None or self._saved.stage != stage:
             return None
@@ -114,7 +114,7 @@ class UnfinishedRun:
             raise CannotResume(f"{self._folder / FOLDER / STATE}: {error}: {CURE}") from error
 
     def save(self, stage: str, state: object) -> None:
-        """Write how far all has come, whole or not at all.
+        """Save the progress, completely or not at all.
 
         Raises:
             RunError: When it cannot be written.
@@ -130,8 +130,8 @@ class UnfinishedRun:
         self._due_s = time.monotonic() + SAVES_S
 
     def restart(self) -> None:
-        """The run begins anew: no state is left to go on from, and what is still to be written of
-        the journal is written before a new one takes its place."""
+        """The run begins again: the saved state is removed, and pending journal records are
+        written before a new journal replaces it."""
         self._saved = None
         with writing(self._folder):
             (self._folder / FOLDER / STATE).unlink(missing_ok=True)
@@ -140,12 +140,12 @@ class UnfinishedRun:
             journal_before.close()
 
     def close(self) -> None:
-        """Write no more; what is done stays."""
+        """Write no more; the results so far stay."""
         for file in self._files.values():
             file.close()
 
     def remove(self) -> None:
-        """Nothing of this is needed any more; a run folder without results goes too."""
+        """Remove everything; a run folder without results is removed too."""
         self.close()
         discard(self._folder)
         with contextlib.suppress(OSError):
@@ -156,10 +156,10 @@ CURE: Final = "leave out --resume to begin anew"
 
 
 def saved_in(folder: Path, identity: Identity) -> Saved | None:
-    """How far the run in a folder had come; None where none was cut short, or it saved nothing yet.
+    """Progress of the run in a folder; None where none was cut short, or nothing was saved yet.
 
     Raises:
-        CannotResume: When that is of another run, or was damaged.
+        CannotResume: When it is of another run, or damaged.
     """
     path = folder / FOLDER / STATE
     if not path.is_file():
@@ -177,10 +177,10 @@ def saved_in(folder: Path, identity: Identity) -> Saved | None:
 
 
 def refuse_another(folder: Path, before: Identity, now: Identity) -> None:
-    """Refuse to go on with a run that was begun of something else.
+    """Refuse to resume a run with a changed identity.
 
     Raises:
-        CannotResume: With what differs.
+        CannotResume: It names the differences.
     """
     changed = differing(before, now)
     if changed:
@@ -191,7 +191,7 @@ def refuse_another(folder: Path, before: Identity, now: Identity) -> None:
 
 
 def discard(folder: Path) -> None:
-    """Take away what a run left that was cut short.
+    """Remove the remains of a run that was cut short.
 
     Raises:
         OSError: When it cannot be taken away.

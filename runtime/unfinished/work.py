@@ -1,4 +1,4 @@
-"""Where a run keeps what it makes while it goes on: in memory, or on disk and to be resumed."""
+"""Storage of a run's intermediate results: in memory, or on disk for resuming."""
 
 from typing import Any, NamedTuple, Protocol, TypeVar
 
@@ -7,27 +7,27 @@ from runtime.unfinished.message_file import MessageFile
 
 State = TypeVar("State")
 Kept = list[Any] | MessageFile[Any]
-"""Messages in the order in which they came; what comes is appended."""
+"""A growing sequence of messages in the order in which they came."""
 
 
 class Work(Protocol):
-    """What a run keeps while it goes on."""
+    """Storage of a run in progress."""
 
     @property
     def due(self) -> bool:
-        """Whether the state is to be saved now."""
+        """Whether the state is due to be saved."""
 
     def messages(self, name: str) -> Kept:
-        """Messages of one kind, as far as they had come."""
+        """Messages of one kind, up to their saved extent."""
 
     def resumed(self, stage: str, kind: type[State]) -> State | None:
-        """The state in which a stage was left; None where it was not begun, or is over."""
+        """The saved state of a stage; None where it was not begun, or is over."""
 
     def save(self, stage: str, state: object) -> None:
-        """The state of a stage, for the case that the run is cut short."""
+        """Save the state of a stage, in case the run is cut short."""
 
     def restart(self) -> None:
-        """The run begins anew: what was kept is forgotten when it is asked for again."""
+        """The run begins again: saved results are discarded at their next request."""
 
 
 class InMemory:
@@ -40,7 +40,7 @@ class InMemory:
         return []
 
     def restart(self) -> None:
-        """Nothing was kept."""
+        """Nothing was saved."""
 
     def resumed(self, _stage: str, _kind: type[State]) -> State | None:
         """Nothing was begun."""
@@ -51,7 +51,7 @@ class InMemory:
 
 
 class Course(NamedTuple):
-    """How a run goes on: who hears how much of it is done, and where it keeps things."""
+    """Context of a run: who receives its progress, and where results are stored."""
 
     tell: Tell = lambda _: None
     work: Work = InMemory()

@@ -1,1 +1,1 @@
-"""What parts of a run import, compile and load before their first frames."""
+"""Imports, compilation and loading of a run's parts before their first frames."""

@@ -1,4 +1,4 @@
-"""All that the parts of a run pass through before their first frames, compiled and loaded."""
+"""Warm-up: all code that the parts of a run execute before their first frames."""
 
 import io
 from contextlib import redirect_stdout, suppress
@@ -20,19 +20,19 @@ from viewer.viewer_warmup import warm_up as warm_viewer
 
 FIRST_RUN: Final = "tritrack.first_run"
 SIZE: Final = (160, 120)
-"""Of the pictures that are made up; what is compiled does for any."""
+"""Size of the synthetic pictures; the compiled code is valid for any."""
 
 
 def compile_all(_words: Connection) -> None:
-    """Let all be compiled that commands run by default, in silence: the work of a worker."""
+    """Compile all that commands run by default, silently: a worker's job."""
     with redirect_stdout(io.StringIO()):
         import_module(FIRST_RUN).compile_all()
 
 
 def warm_up() -> None:
-    """Pass through all that a part passes through in the default mode before its first frame.
+    """Execute all that a part executes in the default mode before its first frame.
 
-    No library may begin a thread here: forks would lack it.
+    No library may start a thread here: forks would lack it.
     """
     cv2.setNumThreads(1)
     settings = Settings()

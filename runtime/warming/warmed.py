@@ -1,6 +1,6 @@
-"""What the parts of a run are forked from: everything imported, compiled code loaded.
+"""The state that a run's parts are forked from: modules imported, compiled code loaded.
 
-Imported where a platform's launcher loads what parts need, and the work is done as it is imported.
+A platform's launcher imports this module, and the import does the work.
 """
 
 from typing import Final
@@ -18,9 +18,9 @@ PROCESSES: Final = (viewer_process, integrator_process, recognizer_process, deco
 
 
 def compile_first() -> None:
-    """Let all be compiled that is not: a part that met it in the midst of a run would stand still.
+    """Compile what is not compiled yet: a part that had to compile during a run would stall.
 
-    In a process of its own, as it begins threads.
+    In a separate process, because compilation starts threads.
     """
     if mark_of_all().exists():
         return

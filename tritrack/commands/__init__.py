@@ -1,1 +1,1 @@
-"""The commands, by group: what a user types, and what is answered."""
+"""The commands, by group."""

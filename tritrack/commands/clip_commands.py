@@ -75,7 +75,7 @@ def track(
 
 
 def line_of_runs(clips: Mapping[str, Mapping[str, Any]], out: Path) -> str:
-    """How many clips were tracked, and in how many of their frames the body is believed."""
+    """Number of tracked clips, and the share of frames in which the body is believed."""
     shares = [facts["believed"] for facts in clips.values() if facts["believed"] is not None]
     doubted = [name for name, facts in clips.items() if (facts.get("trust") or {}).get("advice")]
     rig = f"; not believable: the calibration of {', '.join(doubted)}, see the warning above"
@@ -191,7 +191,7 @@ def export(
 
 
 def line_of_gaps(facts: Mapping[str, Any], to: Format) -> str:
-    """What became of an export's frames that have no pose."""
+    """A note on an export's frames without a pose."""
     if facts.get("filled"):
         return f"; {facts['filled']} without a pose lie between their neighbours"
     if not facts.get("empty"):

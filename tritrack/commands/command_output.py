@@ -1,4 +1,4 @@
-"""What a command answers: JSON on stdout for programs, a line or a table for people."""
+"""Output of a command: JSON on stdout for programs, a line or a table for people."""
 
 from collections.abc import Sequence
 from typing import Annotated, Any

@@ -39,7 +39,7 @@ def keys(
 
 
 def examined_keys(folder: Path) -> list[Finding]:
-    """What the doctor finds of keys."""
+    """The doctor's findings about keys."""
     try:
         from tritrack.doctor.key_check import examine_keys
     except ImportError as error:

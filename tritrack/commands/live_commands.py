@@ -19,7 +19,7 @@ Wait = Annotated[
     bool, typer.Option(help="A clip begins when the page is opened, or half a minute later.")
 ]
 LAST: Final = Path("runs/live")
-"""Where the last live run is, of whatever it was, unless it was to be written elsewhere."""
+"""Default folder of the last live run, of any source."""
 ConfigPath = Annotated[Path, typer.Argument(help="A settings file (TOML), or a clip folder.")]
 
 
@@ -79,7 +79,7 @@ def live(
 
 
 def _refuse_other_than_last(out: Path, settings: Settings) -> None:
-    """See that no other run is lost but the last one, and say so of that."""
+    """Refuse to overwrite a run other than the last one, and report that one's replacement."""
     from common.video.clip_sources import footage_of
     from runtime.store.other_run import other_than, refuse_other, run_of
 
@@ -119,7 +119,7 @@ def view(
     from viewer.__main__ import main as viewer_main
 
     settings = live_settings(settings_file)
-    refuse_a_third_camera(settings)  # and no clip at all: at once, not when the integrator answers
+    refuse_a_third_camera(settings)  # before the integrator answers
     viewer_main(settings, viewer)
 
 
@@ -184,7 +184,7 @@ def animate(settings_file: ConfigPath) -> None:
 
 
 def waiting(settings: Settings, wait: bool) -> Settings:
-    """The settings of a run that waits for its page only where both say so."""
+    """The settings of a run that waits for its page only where settings and command agree."""
     page = msgspec.structs.replace(settings.page, wait=settings.page.wait and wait)
     return msgspec.structs.replace(settings, page=page)
 
@@ -213,7 +213,7 @@ def bridge(
 
 
 def live_settings(path: Path) -> Settings:
-    """The settings of a process of a live run."""
+    """The settings for one process of a live run."""
     from runtime.live.admission import refuse_mode
 
     settings = config_file.load(path)

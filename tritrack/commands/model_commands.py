@@ -1,4 +1,4 @@
-"""The commands for models and figures: learn, and measure what is tracked and recognised."""
+"""The commands for models and figures: training, and evaluation of tracking and recognition."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Final, Literal
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from lab.training.training import Plan
 
 LEARN: Final = ("learn", "sklearn")
-"""The extra of what learns models, and what it brings."""
+"""Name of the extra for training, and its packages."""
 RecognizerName = Annotated[
     Literal["default", "paper"], typer.Option(help=f"Which models. {MODES}.")
 ]
@@ -88,7 +88,7 @@ def train(
 
 
 def _train_postures(runs: list[Path], out: Path, plan: "Plan", json_wanted: bool) -> None:
-    """Learn postures, and report how many."""
+    """Train postures, and report how many."""
     from lab.training.training import train_postures
 
     facts = train_postures(runs, out, plan, console)
@@ -102,7 +102,7 @@ def _train_postures(runs: list[Path], out: Path, plan: "Plan", json_wanted: bool
 def _train_network(
     what: Literal["proposals", "lifting", "silhouettes", "landmarks"], out: Path, json_wanted: bool
 ) -> None:
-    """Learn one of the networks in the package from people that are made up for it."""
+    """Train one of the package's networks on synthetic people."""
     if what == "proposals":
         from lab.training.proposal_training import train_proposals
 
@@ -131,7 +131,7 @@ def _train_network(
 
 
 def _teach_on_films(films: list[Path], teacher: str, out: Path, json_wanted: bool) -> None:
-    """Teach the shipped network of landmarks by what another pose estimator sees in videos."""
+    """Train the packaged landmark network on another pose estimator's output for videos."""
     refuse_without("train", "torch", "onnx", "onnxscript", "anny")
     from lab.film_lessons.film_training import teach_on_films
 

@@ -1,4 +1,4 @@
-"""What several commands take: their shared arguments and options."""
+"""Arguments and options that several commands share."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -15,15 +15,15 @@ from common.config.settings import MOST_OFFSET_S
 MODES: Final = "default: most accurate; paper: as published 2004"
 WORKED_ON: Final = "Largest working picture, WIDTHxHEIGHT."
 Checked = Callable[[float | None], float | None]
-"""Hands an option on, or refuses it."""
+"""A callback that accepts or refuses an option."""
 
 
 def writable(folder: Path | None) -> Path | None:
-    """A folder that can be written, or made: what cannot is refused before long work, not after.
+    """A folder that can be written or created; another one is refused before long work begins.
 
     Raises:
-        BadParameter: When it is neither: a folder for a moment there shows it, also where rights
-            tell nothing, as in /proc.
+        BadParameter: When it is neither. A folder is created there for a test, because permissions
+            alone do not tell, as in /proc.
     """
     if folder is None:
         return None
@@ -39,10 +39,10 @@ def writable(folder: Path | None) -> Path | None:
 
 
 def size_given(text: str | None) -> str | None:
-    """A picture size, refused before anything is opened.
+    """A picture size, checked before anything is opened.
 
     Raises:
-        BadParameter: When it is none.
+        BadParameter: When it is invalid.
     """
     try:
         if text is not None:
@@ -53,10 +53,10 @@ def size_given(text: str | None) -> str | None:
 
 
 def numbers_given(text: str) -> tuple[ViewerNumber, ...]:
-    """Numbers of cameras: 2, 1,3 or, as versions before wrote them, 12; in ascending order.
+    """Numbers of cameras: 2, 1,3 or, as earlier versions wrote them, 12; in ascending order.
 
     Raises:
-        BadParameter: When one is none, is beyond the last that there may be, or comes twice.
+        BadParameter: When one is invalid, too large, or repeated.
     """
     words = [word.strip() for word in text.split(",")] if "," in text else [*text]
     if not words or not all(word.isascii() and word.isdigit() for word in words):
@@ -70,7 +70,7 @@ def numbers_given(text: str) -> tuple[ViewerNumber, ...]:
 
 
 def views_given(text: str | None) -> str | None:
-    """The cameras to use, refused before anything is opened.
+    """The cameras to use, checked before anything is opened.
 
     Raises:
         BadParameter: As `numbers_given`.
@@ -81,13 +81,13 @@ def views_given(text: str | None) -> str | None:
 
 
 def measured(unit: str, low: float, high: float, hundredths: bool = False) -> Checked:
-    """What refuses a number out of bounds with its unit.
+    """A callback that refuses a number out of bounds, with its unit.
 
     Args:
-        unit: Of the number.
-        low: At least; `high`: at most.
-        high: See `low`.
-        hundredths: Who gives centimetres is asked whether the hundredth was meant.
+        unit: Unit of the number.
+        low: Smallest value; `high`: largest.
+        high: Largest value.
+        hundredths: Ask whether a hundredth was meant, as where the user gives centimetres.
     """
 
     def check(value: float | None) -> float | None:
@@ -106,10 +106,10 @@ square_given = measured("mm", 1.0, 1000.0)
 
 
 def writable_file(path: Path | None) -> Path | None:
-    """A file that can be written, or replaced.
+    """A file that can be written or replaced.
 
     Raises:
-        BadParameter: When it is a folder, or its own cannot be written.
+        BadParameter: When it is a folder, or its folder cannot be written.
         FileRefused: When it is no ordinary file.
     """
     if path is None:
@@ -130,7 +130,7 @@ OwnMode = Annotated[
     typer.Option(help="How clips are tracked, if not in the recogniser's own mode."),
 ]
 CACHE: Final = Path("runs/.tracked")
-"""Hidden: `runs/*/` names runs alone."""
+"""Hidden folder in `runs/`: the pattern `runs/*/` then matches runs alone."""
 Cache = Annotated[
     Path,
     typer.Option(

@@ -135,7 +135,7 @@ def board(
 
 
 def _calibrate(videos: list[Path], shown: "Shown", out: Path, json_wanted: bool) -> None:
-    """Calibrate by videos of the board, and tell how well they agree."""
+    """Calibrate with videos of the board, and report the quality."""
     from runtime.offline.rig_of_boards import calibrate_by_videos
 
     quality, drawn = calibrate_by_videos(videos, shown, out, console)
@@ -214,7 +214,7 @@ def poles(
 
 
 def _kept(points: Path) -> Path:
-    """The file in which a page keeps points, refused before a click where it cannot."""
+    """The page's file of points, refused before any click where it cannot be written."""
     writable_file(points)
     return points
 

@@ -1,1 +1,1 @@
-"""What is missing, here and for a run, and what to do about it."""
+"""Checks of the installation and of a run's needs, with cures."""

@@ -1,4 +1,4 @@
-"""The installation, looked over: what is there, what is missing, what to do about it."""
+"""Checks of the installation: each item, its state, and the cure."""
 
 import os
 import shutil
@@ -25,7 +25,7 @@ REQUIRED = {
     "msgspec": "msgspec",
     "numba": "numba",
 }
-"""Distribution and the module that it brings."""
+"""A distribution and its module."""
 
 EXTRAS: Final = (
     ("live page", "viser", "page"),
@@ -41,22 +41,22 @@ EXTRAS: Final = (
     ("metrics", "prometheus-client", "metrics"),
     ("keys of a bus", "cryptography", "keys"),
 )
-"""What only some commands need: its use, the distribution, and the extra that brings it."""
+"""Optional packages: the use, the distribution, and the extra that installs it."""
 
 
 class Finding(NamedTuple):
-    """One thing that was looked at."""
+    """One checked item."""
 
     what: str
     ok: bool
     detail: str
     cure: str = ""
     needed: bool = True
-    """False: tritrack works without it, less of it."""
+    """False: tritrack works without it, with fewer features."""
 
 
 def examine() -> list[Finding]:
-    """Look at everything, one after the other; nothing that fails keeps the rest from it."""
+    """Check all items, one after the other; a failed check does not stop the rest."""
     checks: list[Callable[[], Finding]] = [
         _python,
         *(
@@ -77,7 +77,7 @@ def examine() -> list[Finding]:
 
 
 def table_of(findings: list[Finding]) -> Table:
-    """The findings as a table for a person."""
+    """The findings as a table."""
     table = Table("", "what", "found", "what to do")
     for finding in findings:
         mark = (
@@ -93,9 +93,9 @@ def table_of(findings: list[Finding]) -> Table:
 
 
 def refused(what: str, error: Exception) -> Finding:
-    """A look that ended in an error, whose text says a fault, and after its last colon the cure.
+    """A check that raised an error, whose text is a fault and, after its last colon, the cure.
 
-    Where there is a semicolon the cure begins behind it.
+    Where there is a semicolon the cure begins after it.
     """
     text = str(error)
     detail, mark, cure = text.partition("; ") if "; " in text else text.rpartition(": ")
@@ -124,7 +124,7 @@ def _package(name: str, module: str) -> Finding:
 
 
 def _own_names() -> Finding:
-    """Other packages named common or viewer exist: none of them may be found instead of ours."""
+    """Other packages are named common or viewer: none of them may be found instead of ours."""
     places = {name: Path(str(import_module(name).__file__)).resolve() for name in PACKAGES}
     foreign = [name for name, place in places.items() if not place.is_relative_to(ROOT)]
     return Finding(

@@ -1,4 +1,4 @@
-"""Keys looked over: what is missing, expired, of another authority, or for others to read."""
+"""Checks of keys: missing, expired, of another authority, or readable by others."""
 
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
@@ -18,11 +18,11 @@ COPY: Final = "copy it from where the keys were made, or make all anew (tritrack
 
 
 def examine_keys(folder: Path, now: datetime | None = None) -> list[Finding]:
-    """Look at the authority and at every part; a host needs the files of its own parts alone.
+    """Check the authority and every part; a host needs only the files of its own parts.
 
     Args:
-        folder: That of the keys.
-        now: Against which dates are held, with a time zone; None: the clock's.
+        folder: The keys' folder.
+        now: Time to check dates against, with a time zone; None: the clock's.
     """
     now = now or datetime.now(UTC)
     path = folder / AUTHORITY
@@ -43,7 +43,7 @@ def examine_keys(folder: Path, now: datetime | None = None) -> list[Finding]:
 
 
 def _examined(folder: Path, part: Part, authority: x509.Certificate, now: datetime) -> Finding:
-    """The first thing that is wrong with a part's certificate or key, or how long it holds."""
+    """The first fault of a part's certificate or key, or its date of expiry."""
     what, own = f"keys: {part}", pair_of(folder, part)
     try:
         path = own.certificate
@@ -83,7 +83,7 @@ def _dated(name: str, certificate: x509.Certificate, now: datetime) -> Finding:
 
 
 def _hosts(certificate: x509.Certificate) -> str:
-    """By which names and addresses the integrator is called."""
+    """The names and addresses of the integrator in its certificate."""
     named = certificate.extensions.get_extension_for_class(x509.SubjectAlternativeName).value
     return "; for " + ", ".join(str(name.value) for name in named)
 

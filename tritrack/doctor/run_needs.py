@@ -1,4 +1,4 @@
-"""What a live run of some settings needs of this machine: ports, pictures, disk, a clock."""
+"""Checks of a live run's needs on this machine: ports, pictures, disk, clock."""
 
 import shutil
 import time
@@ -13,18 +13,18 @@ from runtime.live.free_ports import refuse_held_endpoint, refuse_held_metrics, r
 from tritrack.doctor.installation import Finding, refused
 
 LEAST_BYTES: Final = 1 << 30
-"""An hour of both silhouettes at 320x240, 9.6 kB each, fifteen times a second, recorded: as
-much."""
+"""Disk space for an hour of recording, bytes: both silhouettes at 320x240, 9.6 kB each, at 15
+Hz."""
 ZONE_S: Final = 86_400.0
-"""Dates of unpacked files may be of another time zone."""
+"""Tolerance of dates, as unpacked files may have another time zone."""
 
 
 def examine_run(settings: Settings, out: Path) -> list[Finding]:
-    """Look at all of it, one after the other; nothing that fails keeps the rest from it.
+    """Check all items, one after the other; a failed check does not stop the rest.
 
     Args:
-        settings: Of the run.
-        out: Where it would be written.
+        settings: The run's settings.
+        out: The run's folder.
     """
     looks: list[tuple[str, Callable[[], str | None]]] = [
         ("port of the bus", lambda: refuse_held_endpoint(settings)),
@@ -64,7 +64,7 @@ def _disk(out: Path) -> Finding:
 
 
 def _clock(now_s: float) -> Finding:
-    """A clock that was never set stands before all that is installed."""
+    """A clock that was never set is earlier than all installed files."""
     made_s = Path(__file__).stat().st_mtime
     shown = time.strftime("%Y-%m-%d %H:%M", time.localtime(now_s))
     cure = "set this host's clock: it shows a time before tritrack was installed, and keys go by it"

@@ -1,4 +1,4 @@
-"""Line markers on the marking page: what is asked, and what their points tell."""
+"""Line markers on the marking page: what to click, and the result."""
 
 from collections.abc import Sequence
 from typing import Final
@@ -24,20 +24,20 @@ HINTS: Final = {
 }
 KINDS: Final[tuple[Kind, ...]] = ("floor", "wall")
 START: Final[tuple[Kind, ...]] = ("floor",) * 4 + ("wall",) * 4
-"""Four on each: of three it cannot be seen which one is off."""
+"""Points per marker: with three an outlier cannot be identified."""
 NOMINAL_M: Final = 4.0
-"""Where cameras are drawn from above: markers do not tell how far they stand."""
+"""Distance at which cameras are drawn from above, metres: markers do not determine it."""
 DRAWN_DEG: Final = 40.0
-"""How wide they are drawn to see."""
+"""Angle of view with which they are drawn."""
 
 
 def marker_method(size: Size, before: Markers | None, views: Sequence[int]) -> MarkingMethod:
-    """Aiming cameras by line markers.
+    """The method that aims cameras by line markers.
 
     Args:
-        size: Of the pictures.
-        before: What the file of points says already.
-        views: Numbers of the cameras that there are.
+        size: Size of the pictures.
+        before: The content of the file of points.
+        views: Numbers of the existing cameras.
     """
     numbers = tuple(
         Number(_key(n), f"focal length of camera {n}, by its data", "px", True) for n in views
@@ -58,16 +58,16 @@ def marker_method(size: Size, before: Markers | None, views: Sequence[int]) -> M
 
 
 def markers_of(sheet: Sheet, size: Size, views: Sequence[int]) -> Markers:
-    """The markers that a sheet shows.
+    """The markers on a sheet.
 
     Raises:
-        CalibrationError: When a focal length was not said.
+        CalibrationError: When a focal length is missing.
     """
     return Markers(*size, tuple(_view(sheet, number) for number in views))
 
 
 def sheet_of_markers(measured: Markers, views: Sequence[int]) -> Sheet:
-    """The sheet on which a file's markers stand: its cameras by name, or in their order."""
+    """The sheet for a file's markers: its cameras by name, or in order."""
     named = {view.name: view for view in measured.cameras}
     ordered = dict(zip(views, measured.cameras, strict=False))
     own = {n: named.get(f"cam{n}", ordered.get(n)) for n in views}
@@ -81,7 +81,7 @@ def sheet_of_markers(measured: Markers, views: Sequence[int]) -> Sheet:
 
 
 def solve_markers(sheet: Sheet, size: Size, views: Sequence[int]) -> Solved:
-    """How each camera points, as far as the points tell it."""
+    """The aim of each camera, as far as the points determine it."""
     names = tuple(_name(n, sheet) for n in range(len(sheet.marks)))
     seen, aims = zip(*(_seen(sheet, number, size) for number in views), strict=True)
     worst = suspect_point(sheet, views, lambda other, number: _seen(other, number, size)[0])
@@ -96,7 +96,7 @@ def solve_markers(sheet: Sheet, size: Size, views: Sequence[int]) -> Solved:
 
 
 def markers_text(measured: Markers) -> str:
-    """The markers as the typed command reads them (TOML), without a head."""
+    """The markers in the typed command's form (TOML), without remarks."""
     lines = [f"width = {measured.width}", f"height = {measured.height}"]
     for view in measured.cameras:
         lines += ["", "[[cameras]]", f'name = "{view.name}"']
@@ -150,7 +150,7 @@ def _seen(sheet: Sheet, number: int, size: Size) -> tuple[Seen, Aim | None]:
 
 
 def _ends(line: np.ndarray, far_px: int, along: int) -> tuple[Pixel, Pixel] | None:
-    """Where a line meets both borders of the picture that it runs between; None where neither."""
+    """Intersections of a line with both borders of the picture; None where it meets neither."""
     across = 1 - along
     if abs(line[across]) < 1e-9:
         return None

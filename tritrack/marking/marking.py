@@ -1,4 +1,4 @@
-"""Markers or poles clicked on a page: its pictures, its answers and its files, until Ctrl-C."""
+"""Markers or poles clicked on a page: its pictures, answers and files, until Ctrl-C."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -23,19 +23,19 @@ from tritrack.marking.pole_sheet import pole_method
 from tritrack.marking.stills import Album, open_album
 
 LOOK_S: Final = 0.02
-"""How often it is seen whether a browser said something."""
+"""Interval at which browsers' messages are read, seconds."""
 HEAD: Final = "# Points clicked on the page; the centre of the top-left pixel is (0.5, 0.5).\n\n"
 
 
 class Asked(NamedTuple):
-    """What the command line says."""
+    """The command-line options."""
 
     clip: Path
     """A clip folder, or a settings file."""
     points: Path
-    """Where the points are, and are kept."""
+    """The file of points, read and written."""
     port: int | None
-    """Of the page; None: the settings'."""
+    """Port of the page; None: the settings'."""
 
 
 class KeptPoints(NamedTuple):
@@ -43,16 +43,16 @@ class KeptPoints(NamedTuple):
 
     path: Path
     head: str
-    """Remarks before all else."""
+    """Remarks at its head."""
 
 
 class Result(NamedTuple):
-    """What was reached when the page is closed."""
+    """The result when the page is closed."""
 
     rows: Sequence[msgspec.Struct]
-    """Of each camera; none where the points do not suffice."""
+    """By camera; empty where the points do not suffice."""
     saved: Sheet | None
-    """Of which points the calibration was written last."""
+    """The points of the last written calibration."""
     newest: Sheet
 
 
@@ -60,8 +60,8 @@ def mark_markers(asked: Asked, console: Console) -> Result:
     """Show the page of the line markers until Ctrl-C.
 
     Raises:
-        CalibrationError, ClipError, SettingsError, PageError, Undecodable, DecoderDied: When
-            something cannot be worked with.
+        CalibrationError, ClipError, SettingsError, PageError, Undecodable, DecoderDied: When an
+            input is unusable.
     """
     before = read_points(asked.points, Markers) if asked.points.exists() else None
     settings = config_file.load(asked.clip)
@@ -73,7 +73,7 @@ def mark_markers(asked: Asked, console: Console) -> Result:
 
 
 def mark_poles(asked: Asked, out: Path, console: Console) -> Result:
-    """Show the page of the poles until Ctrl-C; `out` is the calibration that it saves.
+    """Show the page of the poles until Ctrl-C; `out` is the calibration file that it saves.
 
     Raises:
         As `mark_markers`.
@@ -93,10 +93,10 @@ def mark_poles(asked: Asked, out: Path, console: Console) -> Result:
 def refuse_other_size(
     path: Path, before: Markers | Poles, size: tuple[int, int], clicked: bool
 ) -> None:
-    """Points of other pictures cannot be gone on with.
+    """Refuse points that belong to other pictures.
 
     Raises:
-        CalibrationError: When there are any, in pictures of another size.
+        CalibrationError: When there are points for pictures of another size.
     """
     if clicked and (before.width, before.height) != size:
         raise CalibrationError(
@@ -106,7 +106,7 @@ def refuse_other_size(
 
 
 def answered(method: MarkingMethod, marked: Marked, kept: KeptPoints) -> Shown:
-    """What a sheet gives; its points are kept in the file, where the numbers suffice for one."""
+    """The result of a sheet; its points are saved in the file once its numbers suffice."""
     sheet = marked.sheet
     try:
         write_text(kept.path, kept.head + method.text(sheet))
@@ -117,10 +117,10 @@ def answered(method: MarkingMethod, marked: Marked, kept: KeptPoints) -> Shown:
 
 
 def kept_points(path: Path) -> KeptPoints:
-    """The file of the points, with the remarks at its head where it is there already.
+    """The file of the points, with its existing remarks.
 
     Raises:
-        CalibrationError: When it is to be JSON, which has no remarks.
+        CalibrationError: When it would be JSON, which has no remarks.
     """
     if path.suffix == ".json":
         raise CalibrationError(f"the page keeps points as TOML: name another file than {path}")
@@ -173,7 +173,8 @@ def _serve(
 def _hear(
     page: MarkingPage, method: MarkingMethod, hello: Hello, shown: Shown, kept: KeptPoints
 ) -> tuple[Shown, Sheet | None]:
-    """Do what browsers asked for: what is shown then, and what a calibration was written of."""
+    """Process the browsers' requests; returns the present sheet, and that of the last written
+    calibration."""
     saved = None
     try:
         while (wish := page.next_wish()) is not None:

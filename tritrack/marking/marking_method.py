@@ -1,4 +1,4 @@
-"""A way to calibrate, as the marking page needs to know it."""
+"""The marking page's interface to a calibration method."""
 
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
@@ -9,27 +9,27 @@ from animator.marking.sheet import Number, Sheet, Solved
 
 
 class MarkingMethod(NamedTuple):
-    """What is asked for on the page, and what is made of it."""
+    """The page's questions, and the evaluation of the answers."""
 
     name: str
     numbers: tuple[Number, ...]
     hints: dict[str, tuple[str, str]]
-    """Of each kind of mark what to click, in camera 1 and 2."""
+    """For each kind of mark what to click, in camera 1 and 2."""
     start: Sheet
     solve: Callable[[Sheet], Solved]
     text: Callable[[Sheet], str]
-    """The file of points that the typed command reads; CalibrationError where a number lacks."""
+    """The typed command's file of points; CalibrationError where a number is missing."""
     write: Callable[[Sheet], None] | None
     """Writes the calibration; None: the method has none."""
     rows: Callable[[Sheet], Sequence[msgspec.Struct]]
-    """What the typed command prints, of each camera."""
+    """The typed command's output, by camera."""
 
 
 def toml_number(value: float) -> str:
-    """A number that TOML reads back as it is."""
+    """A number that TOML reads back exactly."""
     return repr(float(value))
 
 
 def toml_pixels(points: Sequence[tuple[float, float]]) -> str:
-    """Points as TOML writes them, without the outer brackets."""
+    """Points in TOML's form, without the outer brackets."""
     return ", ".join(f"[{toml_number(column)}, {toml_number(row)}]" for column, row in points)

@@ -1,4 +1,4 @@
-"""Poles on the marking page: what is asked, and what their tops tell."""
+"""Poles on the marking page: what to click, and the result."""
 
 import math
 import string
@@ -33,16 +33,16 @@ NUMBERS: Final = (
 )
 TOP: Final = "the top of the pole"
 START_M: Final = ((0.0, 0.0), (0.0, 1.0), (1.0, 0.0), (1.0, -1.0), (1.0, 1.0))
-"""A, B and C of section 4.1, D_X = D_Z = 1 m, and two more."""
+"""Default positions: A, B and C of section 4.1, D_X = D_Z = 1 m, and two more."""
 VIEWS: Final = (1, 2)
 
 
 def pole_method(size: Size, before: Poles | None, out: Path) -> MarkingMethod:
-    """Calibrating by poles.
+    """The method that calibrates by poles.
 
     Args:
-        size: Of the pictures.
-        before: What the file of points says already.
+        size: Size of the pictures.
+        before: The content of the file of points.
         out: The `calibration.json` to write.
     """
     return MarkingMethod(
@@ -58,10 +58,10 @@ def pole_method(size: Size, before: Poles | None, out: Path) -> MarkingMethod:
 
 
 def poles_of(sheet: Sheet, size: Size) -> Poles:
-    """The poles that a sheet shows.
+    """The poles on a sheet.
 
     Raises:
-        CalibrationError: When their height was not said, or a length is in another unit.
+        CalibrationError: When their height is missing, or a length is in another unit.
     """
     height_m = sheet.numbers.get("pole_height_m")
     if height_m is None:
@@ -79,7 +79,7 @@ def poles_of(sheet: Sheet, size: Size) -> Poles:
 
 
 def sheet_of_poles(measured: Poles) -> Sheet:
-    """The sheet on which a file's poles stand."""
+    """The sheet for a file's poles."""
     marks = [
         Mark("pole", (pole.cam1_px, pole.cam2_px), (pole.x_m, pole.z_m)) for pole in measured.poles
     ]
@@ -87,7 +87,7 @@ def sheet_of_poles(measured: Poles) -> Sheet:
 
 
 def solve_poles(sheet: Sheet, size: Size) -> Solved:
-    """Each camera as far as the tops tell it, and the room from above."""
+    """Each camera as far as the tops determine it, and the room from above."""
     names = tuple(_name(n, mark) for n, mark in enumerate(sheet.marks))
     seen, known = zip(*(_seen(sheet, number, size) for number in VIEWS), strict=True)
     worst = suspect_point(sheet, VIEWS, lambda other, number: _seen(other, number, size)[0])
@@ -102,7 +102,7 @@ def solve_poles(sheet: Sheet, size: Size) -> Solved:
 
 
 def poles_text(measured: Poles) -> str:
-    """The poles as the typed command reads them (TOML), without a head."""
+    """The poles in the typed command's form (TOML), without remarks."""
     lines = [f"width = {measured.width}", f"height = {measured.height}"]
     for number in NUMBERS:
         value = getattr(measured, number.key)

@@ -22,12 +22,13 @@ from common.video.pictures import Decoded, DecoderDied, Image, Size, Source, Wan
 from runtime.terminal import bar
 
 MOST_STILLS: Final = 100
-"""Of each video, evenly spread: markers stand still, and a pole that is carried about rests."""
+"""Stills of each video, evenly spaced: markers do not move, and a pole that is carried about
+rests."""
 BOUND: Final = (1920, 1080)
-"""Pictures are shown, and their points told, no larger."""
+"""Bound of the pictures' size, pixels; points are in these pixels."""
 JPEG_QUALITY: Final = 92
 FIRST_S: Final = 60.0
-"""A camera's first picture is waited for no longer; a decoder that is stuck is told before."""
+"""Seconds to wait for a camera's first picture; a stuck decoder is reported before."""
 
 
 class Reader(Protocol):
@@ -37,7 +38,7 @@ class Reader(Protocol):
         """All its pictures, reduced to a size."""
 
     def stop(self) -> None:
-        """End that, from any thread."""
+        """Stop, from any thread."""
 
 
 class Film(NamedTuple):
@@ -45,7 +46,7 @@ class Film(NamedTuple):
 
     jpegs: tuple[bytes, ...]
     frames: tuple[int, ...]
-    """Their places in the video."""
+    """Their indices in the video."""
 
     def jpeg(self, place: int) -> bytes | None:
         """A still, None where there is none."""
@@ -67,12 +68,12 @@ class Running:
             self.fault = DecoderDied(source, 0, f"it gave no picture for {FIRST_S:g} s")
 
     def jpeg(self, place: int) -> bytes | None:
-        """The newest picture, which is all that there is."""
+        """The newest picture, the only one."""
         newest = self._newest
         return None if newest is None or place != LIVE else _jpeg(newest)
 
     def close(self) -> None:
-        """Let go of the camera."""
+        """Close the camera."""
         self._closed.set()
         self._reader.stop()
         self._thread.join()
@@ -97,7 +98,7 @@ class Album(NamedTuple):
 
     @property
     def pictures(self) -> tuple[Pictures, ...]:
-        """As a browser is told of them."""
+        """In the form for browsers."""
         return tuple(_pictures(number, view) for number, view in self.views.items())
 
     def jpeg(self, camera: int, place: int) -> bytes | None:
@@ -105,10 +106,10 @@ class Album(NamedTuple):
         return self.views[camera].jpeg(place) if camera in self.views else None
 
     def refuse_fault(self) -> None:
-        """See that every camera still runs.
+        """Check that every camera still runs.
 
         Raises:
-            Undecodable, DecoderDied: When one does not; whatever else ended its thread.
+            Undecodable, DecoderDied: When one does not; also any other error of its thread.
         """
         for view in self.views.values():
             if isinstance(view, Running) and view.fault is not None:
@@ -120,8 +121,8 @@ def open_album(settings: Settings, console: Console) -> Iterator[Album]:
     """The pictures of a run's views; cameras run until the end.
 
     Raises:
-        ClipError, Undecodable, DecoderDied: When something cannot be looked at, or the views'
-            pictures are not of one shape.
+        ClipError, Undecodable, DecoderDied: When a source cannot be opened, or the views' pictures
+            differ in shape.
     """
     footage = footage_of(settings)
     if not footage:
@@ -143,10 +144,10 @@ def open_album(settings: Settings, console: Console) -> Iterator[Album]:
 
 
 def common_size(sizes: Sequence[Size]) -> Size:
-    """The size at which all views' pictures are shown: no larger than any of them, nor than BOUND.
+    """The size of all shown pictures: no larger than any view's, nor than BOUND.
 
     Raises:
-        ClipError: When their shapes differ, as no calibration has.
+        ClipError: When their shapes differ, which no calibration allows.
     """
     first = min(sizes)
     for other in sizes:

@@ -1,4 +1,4 @@
-"""Which clicked point to look at first: that without which all others fit best."""
+"""The clicked point to check first: the one without which all others fit best."""
 
 from collections.abc import Callable, Sequence
 from typing import Final
@@ -8,22 +8,23 @@ import msgspec
 from animator.marking.sheet import Seen, Sheet
 
 NOISE_PX2: Final = 1e-6
-"""Sums of squares that differ by less are the same, and points that are off by less are not."""
+"""Tolerances: sums of squares that differ by less are equal, and points with a smaller error are
+good."""
 
 
 def suspect_point(
     sheet: Sheet, views: Sequence[int], seen_by: Callable[[Sheet, int], Seen]
 ) -> tuple[int, int] | None:
-    """Camera (its place in `views`) and mark; None where nothing is off, or nothing could show it.
+    """Camera (its index in `views`) and mark; None where all fit, or the fit cannot show it.
 
-    A point with leverage draws the fit to itself, so that what is farthest off may be another. So
-    each is left out in turn. Where that tells nothing, as of three points on a line, it is the
-    farthest off.
+    A point with leverage pulls the fit to itself, so the largest residual may belong to another. So
+    each is left out in turn. Where that does not help, as with three points on a line, it is the
+    one with the largest residual.
 
     Args:
         sheet: The points.
         views: Numbers of the cameras, 1 or 2.
-        seen_by: What points tell of a camera.
+        seen_by: Evaluates the points of a camera.
     """
     found = []
     for camera, number in enumerate(views):
@@ -38,7 +39,7 @@ def suspect_point(
 
 
 def without(sheet: Sheet, mark: int, number: int) -> Sheet:
-    """The sheet as if a mark had not been clicked in camera 1 or 2."""
+    """The sheet without a mark's click in camera 1 or 2."""
     own = sheet.marks[mark]
     px = (None, own.px[1]) if number == 1 else (own.px[0], None)
     left = msgspec.structs.replace(own, px=px)

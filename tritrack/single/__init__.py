@@ -1,1 +1,1 @@
-"""Videos of one camera: followed, drawn, retouched."""
+"""Videos of one camera: tracked, drawn, retouched."""

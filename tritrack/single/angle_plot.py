@@ -1,4 +1,4 @@
-"""The angles of a run over time, drawn: a walk shows its steps (T26)."""
+"""A plot of a run's angles over time: a walk shows its steps (T26)."""
 
 import io
 from typing import Final
@@ -14,7 +14,7 @@ SHOWN: Final = {
     "shoulder, forwards": "shoulder_x",
     "elbow": "elbow_x",
 }
-"""What each row of the plot shows of both sides."""
+"""The angle of each row of the plot, for both sides."""
 SIDES: Final = {"left": "tab:blue", "right": "tab:orange"}
 
 
@@ -43,6 +43,6 @@ def angle_plot(poses: Arrays) -> bytes:
 
 
 def _span(time_s: NDArray[np.float64]) -> tuple[float, float]:
-    """From the first to the last moment; something to draw on where that is one."""
+    """From the first to the last moment; not empty even where these are one."""
     first, last = (float(time_s[0]), float(time_s[-1])) if len(time_s) else (0.0, 0.0)
     return first, max(last, first + 0.1)

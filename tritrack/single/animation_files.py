@@ -1,4 +1,4 @@
-"""The files of a followed video that are looked at or animated: curves, background, BVH."""
+"""Files of a tracked video for viewing or animation: curves, background, BVH."""
 
 from importlib.util import find_spec
 from pathlib import Path
@@ -25,23 +25,24 @@ NAMES: Final = (
     *("angles.png", "background.png"),
     *("body.bvh", "keyframes.bvh", "keyframes.json"),
 )
-"""What is written where there is something to write."""
+"""The written files; each is optional."""
 FLAG: Final = (0, 0, 255)
-"""Pixels that were never uncovered are hatched in this colour."""
+"""Hatching of pixels that were never uncovered."""
 
 
 def write_files(folder: Path, arrays: Arrays, background: Background | None) -> list[str]:
-    """Write the angles' curves where matplotlib is, the background if any, and the animation.
+    """Write the angles' curves where matplotlib is installed, the background if any, and the
+    animation.
 
-    None of an earlier run stays: who opens the folder would take it for this one's.
+    Files of an earlier run are removed: they could be taken for this run's.
 
     Args:
-        folder: Of the run.
-        arrays: Of its `poses.npz`.
-        background: None of a sequence of masks.
+        folder: The run's folder.
+        arrays: The arrays of its `poses.npz`.
+        background: None for a sequence of masks.
 
     Returns:
-        What stood in the way of an animation.
+        Why there is no animation; "" where there is one.
 
     Raises:
         RunError: When a file cannot be written.
@@ -59,7 +60,7 @@ def write_files(folder: Path, arrays: Arrays, background: Background | None) -> 
 
 
 def marked(background: Background) -> NDArray[np.uint8]:
-    """The background, what was never uncovered hatched."""
+    """The background, with never uncovered pixels hatched."""
     picture = np.clip(np.rint(background.centre), 0, 255).astype(np.uint8)
     rows, columns = np.indices(background.uncertain.shape)
     picture[background.uncertain & ((rows + columns) % 4 < 2)] = FLAG
@@ -67,7 +68,7 @@ def marked(background: Background) -> NDArray[np.uint8]:
 
 
 def _animate(folder: Path, arrays: Arrays) -> list[str]:
-    """Write the animation and that of the key frames alone; what stood in the way."""
+    """Write the animation and that of the key frames alone; why not, if impossible."""
     try:
         skeleton, motion, steps = steady(all_joints_m(arrays), arrays["time_s"])
     except NoMotion as error:

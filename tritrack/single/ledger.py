@@ -1,4 +1,5 @@
-"""The effort ledger: how many inputs a video took, would gain from, and took the thesis (T24)."""
+"""The effort ledger: numbers of inputs that a video took, would gain from, and took in the
+thesis (T24)."""
 
 from collections.abc import Sequence
 from typing import Any, Final, NamedTuple
@@ -14,11 +15,11 @@ from common.notes.notes import Notes
 from common.npz_file import Facts
 
 JOINTS_BY_HAND: Final = 14
-"""Places that earlier methods had the user point at in every key frame (4.3)."""
+"""Places that the user had to click in every key frame with earlier methods (4.3)."""
 
 
 class Count(msgspec.Struct, frozen=True):
-    """Inputs by what they are about."""
+    """Numbers of inputs by subject."""
 
     orientation: int = 0
     depth: int = 0
@@ -31,7 +32,7 @@ class Count(msgspec.Struct, frozen=True):
 
 
 class Printed(NamedTuple):
-    """What the thesis prints of one of its videos."""
+    """The thesis's numbers for one of its videos."""
 
     video: str
     frames: int
@@ -53,21 +54,23 @@ class Ledger(msgspec.Struct, frozen=True):
     frames: int
     key_frames: int
     given: Count
-    """What the notes say: every value counts once however long it holds; "auto" gives none."""
+    """Inputs in the notes: every value counts once however long it holds; "auto" does not count."""
     open: Count
-    """What could still improve the result: inputs that would settle all that is not sure."""
+    """Further inputs that could improve the result: those that would settle all unsure
+    decisions."""
     thesis: Count
-    """What the thesis's way would take of this video: every orientation, direction and hidden
-    joint given by hand."""
+    """Inputs that the thesis's method would need for this video: every orientation, direction
+    and hidden joint by hand."""
 
     @property
     def by_hand(self) -> int:
-        """What the ways before the thesis would take: all joints of key frames, and directions."""
+        """Inputs that the methods before the thesis would need: all joints of key frames, and
+        directions."""
         return self.key_frames * JOINTS_BY_HAND + self.thesis.depth
 
 
 def ledger(take: Take, notes: Notes) -> Ledger:
-    """Count what was given, what could be, and what the thesis's way would take."""
+    """Count the inputs made, those possible, and those of the thesis's method."""
     clarity = np.where(take.posed, take.confidence.mean(axis=1), np.nan)
     return Ledger(
         frames=len(take.frame),
@@ -79,7 +82,7 @@ def ledger(take: Take, notes: Notes) -> Ledger:
 
 
 def given_inputs(notes: Notes) -> Count:
-    """The inputs in the notes: values that are not what held before."""
+    """The inputs in the notes: values that change what held before."""
     count = {"orientation": 0, "depth": 0, "joints": 0}
     holds: Facts = {}
     for note in notes.note:
@@ -108,10 +111,10 @@ def open_inputs(take: Take) -> Count:
 def inputs(
     values: Sequence[str | float] | NDArray[np.str_ | np.float64], wanted: NDArray[np.bool_]
 ) -> int:
-    """How many sticky inputs say `values` in the frames where that is wanted.
+    """Number of persistent inputs that would set `values` in the frames where that is wanted.
 
-    An input holds on while the values agree with it; frames of no value ("" or 0) agree with
-    anything; where a frame disagrees that was not asked about, the input is given up.
+    An input holds while the values agree with it; frames without a value ("" or 0) agree with
+    anything; at a frame that disagrees and is not wanted, the input ends.
     """
     holds: str | float | None = None
     count = 0
@@ -151,7 +154,7 @@ def facts_of(made: Ledger) -> Facts:
 
 
 def line_of(facts: Facts) -> str:
-    """The ledger's facts in one line."""
+    """The ledger in one line."""
     return (
         f"inputs: {facts['inputs']['all']} given, {facts['inputs_that_could_help']['all']} more "
         f"could help (all by hand: {facts['this_video_by_hand']})"

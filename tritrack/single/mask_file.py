@@ -1,4 +1,4 @@
-"""Silhouettes from a file: sequences of masks, as action databases give them."""
+"""Silhouettes from a file: sequences of masks, the form of action databases."""
 
 import zipfile
 import zlib
@@ -11,11 +11,11 @@ from common.bus.messages import View
 from common.raster.silhouette_report import silhouette_view
 
 MAX_PIXELS: Final = 1 << 30
-"""No sequence is larger: 50,000 frames at 160x120."""
+"""Upper bound of a sequence, bytes: 50,000 frames at 160x120."""
 RATE_HZ: Final = 25.0
-"""Such files name no rate; the databases were recorded for television."""
+"""Frame rate of mask files, which record none; the databases were recorded for television."""
 SHAPE: Final = "__shape"
-"""What follows a sequence's name in the name of the array that tells its unpacked shape."""
+"""Suffix of the array that holds a sequence's unpacked shape, after the sequence's name."""
 
 
 class MaskFileError(ValueError):
@@ -39,12 +39,12 @@ def read_masks(path: Path, rate_hz: float = RATE_HZ) -> MaskSequence:
 
     Args:
         path: `FILE.npz`, where it holds one sequence, or `FILE.npz#SEQUENCE`. A sequence is an
-            array of (n, H, W) masks, or of rows packed by numpy.packbits beside an array of its
-            name and `__shape` that tells (n, H, W).
+            array of (n, H, W) masks, or of rows packed by numpy.packbits beside an array with its
+            name and `__shape` that holds (n, H, W).
         rate_hz: Frames a second.
 
     Raises:
-        MaskFileError: When there is none, or it is no sequence of masks.
+        MaskFileError: When it does not exist, or is no sequence of masks.
     """
     file_name, _, wanted = str(path).partition("#")
     try:

@@ -1,4 +1,4 @@
-"""The overlay of a run as a video: what was followed, drawn on its pictures."""
+"""The overlay of a run as a video: the tracked body drawn on its pictures."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -20,24 +20,24 @@ from runtime.offline.film_tracking import Followed
 from runtime.terminal import Tell
 
 STANDS_S: Final = 5.0
-"""No picture stands for longer in the overlay, however long none was taken."""
+"""Longest display of a picture in the overlay, seconds, however long the gap after it."""
 
 
 def write_overlay(found: Followed, path: Path, decoder: Decoder, tell: Tell) -> Film:
     """Write the overlay beside the other files of a run.
 
-    A video is written at one rate, and lasts as long as the one that was followed: where that one's
-    rate varies, pictures are shown several times, or left out.
+    The video has a constant rate and the duration of the tracked one: where that one's rate varies,
+    pictures are repeated or left out.
 
     Args:
-        found: What one camera gave.
-        path: Of the video, without a suffix.
-        decoder: Reads the video once more.
-        tell: Hears which share of the frames is drawn.
+        found: The result of one camera.
+        path: Path of the video, without a suffix.
+        decoder: Reads the tracked video again.
+        tell: Receives the share of the frames drawn.
 
     Raises:
         FilmError: When it cannot be written.
-        DecoderDied: When the video broke the decoder.
+        DecoderDied: When the video crashed the decoder.
     """
     time_s = np.array([report.captured_s for report in found.reports])
     gaps_s = np.diff(time_s)
@@ -53,11 +53,11 @@ def write_overlay(found: Followed, path: Path, decoder: Decoder, tell: Tell) -> 
 
 
 def shown_times(time_s: Vector, period_s: float) -> NDArray[np.int64]:
-    """How often a video of one rate shows each picture, (n,).
+    """How often a video of constant rate shows each picture, (n,).
 
     Args:
-        time_s: (n,) when each was taken, increasing.
-        period_s: From a picture to the next in the video.
+        time_s: (n,) capture times, increasing.
+        period_s: Time between pictures in the video.
     """
     places = np.rint((time_s - time_s[0]) / period_s).astype(np.int64)
     most = max(1, round(STANDS_S / period_s))
@@ -65,7 +65,7 @@ def shown_times(time_s: Vector, period_s: float) -> NDArray[np.int64]:
 
 
 def overlaid(found: Followed, decoder: Decoder) -> Iterator[Picture]:
-    """Every frame with its silhouette and stick, the lifted body beside it."""
+    """Every frame with its silhouette and stick body, the lifted body beside it."""
     pictures = _pictures(found, decoder)
     for report, body, picture in zip(found.reports, found.bodies, pictures, strict=False):
         yield _drawn(found, report, body, picture)
@@ -84,7 +84,7 @@ def _drawn(found: Followed, report: View, body: Body, picture: Picture) -> Pictu
 
 
 def _pictures(found: Followed, decoder: Decoder) -> Iterator[Picture]:
-    """The frames that were followed; of masks: nothing but paper."""
+    """The tracked frames; for masks, blank paper."""
     if found.clip is None:
         paper = np.full((found.size[1], found.size[0], 3), 255, np.uint8)
         yield from [paper] * len(found.reports)

@@ -1,4 +1,4 @@
-"""A run of one camera fitted again with what was said of it, in a process of its own (T22, T26)."""
+"""A run of one camera fitted again with the user's inputs, in a separate process (T22, T26)."""
 
 import multiprocessing
 import os
@@ -27,14 +27,14 @@ from tritrack.single.single import PASSES, UNUSABLE, Job, follow
 
 HEARD_S: Final = 0.2
 END_S: Final = 5.0
-"""For a process that was told to end; then it is killed."""
+"""Time for a process to end when asked, seconds; then it is killed."""
 STEP: Final = 0.05
-"""Of a pass: told so often how far it is."""
+"""Progress reports per pass."""
 SPAWN: Final = multiprocessing.get_context("spawn")
 
 
 class Said(NamedTuple):
-    """What the process that fits says."""
+    """Messages of the fitting process."""
 
     kind: Literal["far", "done", "failed"]
     text: str = ""
@@ -47,19 +47,19 @@ def refit(
     tell: Callable[[str], object],
     stop: threading.Event,
 ) -> None:
-    """Fit a run's video with these notes; its files give way when all the new ones are written.
+    """Fit a run's video with these notes; its files are replaced when all new ones are written.
 
-    What was exported of the fit before is removed, and so is what the new one has none of.
+    Exports of the previous fit are removed, and so are files that the new one does not have.
 
     Args:
-        folder: Of the run that `tritrack single` wrote.
+        folder: Folder of a run that `tritrack single` wrote.
         settings: Its own; camera 1 is its video.
-        notes: All that was said of the video.
-        tell: Hears how far it is.
-        stop: Set when it shall leave off.
+        notes: All inputs for the video.
+        tell: Receives the progress.
+        stop: Set to stop.
 
     Raises:
-        FitError: When the video cannot be fitted, or it was stopped: the run is as it was.
+        FitError: When the video cannot be fitted, or it was stopped: the run is unchanged.
     """
     try:
         with tempfile.TemporaryDirectory(prefix=".again-", dir=folder) as scratch:
@@ -120,7 +120,7 @@ def _end(child: BaseProcess) -> None:
 
 
 def _fit(folder: Path, settings: Settings, notes: Notes, said: Connection) -> None:
-    """The process: whoever started it ends it, whatever a terminal's Ctrl-C says."""
+    """The process: its starter ends it, whatever a terminal's Ctrl-C does."""
     from common.video.decoding import Decoder
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)

@@ -1,4 +1,4 @@
-"""The retouching of a run: its video, its poses and its notes on a page, until Ctrl-C."""
+"""Retouching of a run: its video, its poses and its notes on a page, until Ctrl-C."""
 
 import shlex
 import threading
@@ -39,24 +39,24 @@ if TYPE_CHECKING:
     from animator.retouching.retouch import RetouchPage
 
 MOST_PICTURES: Final = 20_000
-"""They are kept in memory, some 40 kB each."""
+"""Pictures in memory, some 40 kB each."""
 SHOWN: Final = (640, 480)
-"""Pictures on the page are no larger."""
+"""Largest width of a picture on the page, pixels."""
 JPEG_QUALITY: Final = 88
 
 
 class RetouchError(RuntimeError):
-    """A run that cannot be retouched: the text says why and what to do."""
+    """A run that cannot be retouched: the text names the cause and the cure."""
 
 
 class Opened(NamedTuple):
-    """A run that is retouched, with what it was made of."""
+    """A run to retouch, with its inputs."""
 
     run: PastRun
     settings: Settings
-    """The run's own, with the video where it is now."""
+    """The run's own, with the video's present path."""
     clip: Clip
-    """The run's video, through camera 1."""
+    """The run's video, as camera 1."""
     source: Path
     notes_path: Path
 
@@ -67,18 +67,18 @@ def retouch(
     """Show a run on a page that edits the notes of its video, until Ctrl-C.
 
     Args:
-        folder: That of the run.
-        video: Where the run's video is now; None: where its summary says.
-        notes_file: Instead of the notes beside the video.
-        port: Of the page.
-        console: Tells the page's address.
+        folder: The run's folder.
+        video: Present path of the run's video; None: the one in its summary.
+        notes_file: Replaces the notes beside the video.
+        port: The page's port.
+        console: Shows the page's address.
 
     Returns:
         The notes' file and the effort ledger at the end.
 
     Raises:
-        PastRunError, RetouchError, ClipError, DecoderDied, NotesError, PageError: When something
-            cannot be worked with.
+        PastRunError, RetouchError, ClipError, DecoderDied, NotesError, PageError: When an input is
+            unusable.
     """
     make_page = _page_or_refuse()
     opened = _opened(folder, video, notes_file)
@@ -110,7 +110,7 @@ def retouch(
 
 
 def _page_or_refuse() -> type["RetouchPage"]:
-    """The page's class, of which the library is an extra."""
+    """The page's class, whose library is an extra."""
     try:
         from animator.retouching.retouch import RetouchPage
     except ModuleNotFoundError as error:
@@ -129,7 +129,7 @@ def _opened(folder: Path, video: Path | None, notes_file: Path | None) -> Opened
 
 
 def _kept(path: Path, take: Take, notes: Notes) -> tuple[str, bool]:
-    """Write notes: what the page says of that, and whether they are written."""
+    """Write notes; returns the page's message, and whether they were written."""
     try:
         save_notes(path, notes)
     except NotesError as error:
@@ -141,7 +141,7 @@ def _kept(path: Path, take: Take, notes: Notes) -> tuple[str, bool]:
 def _fitted(
     opened: Opened, notes: Notes, report: Callable[[str], object], stop: threading.Event
 ) -> Take:
-    """The run fitted anew by notes, as the page shows it."""
+    """The run fitted again with notes, in the page's form."""
     run = opened.run
     if not fitted_by_single(run):
         raise FitError(how_to_go_on(opened.source, run))
@@ -150,7 +150,7 @@ def _fitted(
 
 
 def fitted_by_single(run: PastRun) -> bool:
-    """Whether a run is one that notes can be fitted into: `tritrack single` wrote it of a video."""
+    """Whether notes can be fitted into a run: `tritrack single` wrote it from a video."""
     told = run_told(run.folder)
     if told is None or told.command != "single":
         return False
@@ -158,7 +158,7 @@ def fitted_by_single(run: PastRun) -> bool:
 
 
 def how_to_go_on(video: Path, run: PastRun) -> str:
-    """What to do with the notes; they are of one camera's picture."""
+    """The cure for notes, which belong to one camera's picture."""
     command = f"tritrack single {shlex.quote(str(video))}"
     if np.any(np.count_nonzero(run.poses["seen"], axis=1) > 1):
         return f"the run has other cameras too, the notes are of camera 1: to fit that, {command}"
@@ -166,7 +166,7 @@ def how_to_go_on(video: Path, run: PastRun) -> str:
 
 
 def _settings_of(run: PastRun, video: Path | None) -> Settings:
-    """The run's own; its video is where it is now."""
+    """The run's own; its video at the present path."""
     try:
         settings = settings_of(run.summary.get("settings", {}))
     except (msgspec.ValidationError, SettingsError) as error:
@@ -181,7 +181,7 @@ def _settings_of(run: PastRun, video: Path | None) -> Settings:
 
 
 def _clip_of(run: PastRun, settings: Settings) -> Clip:
-    """The run's video, through camera 1."""
+    """The run's video, as camera 1."""
     try:
         clip = open_clip(settings, None, (1,))
     except ClipError as error:
@@ -201,7 +201,8 @@ def _take_of(run: PastRun, clip: Clip) -> Take:
 
 
 def _turn_of(run: PastRun, clip: Clip) -> Matrix:
-    """World to camera 1: the calibrated one, or as the run assumed it, level before 2026-11-26."""
+    """World to camera 1: the calibrated one, or the one that the run assumed, level before
+    2026-11-26."""
     if clip.rig is not None:
         return clip.rig.cameras[0].R
     assumed = run.summary.get("camera")
@@ -215,7 +216,8 @@ def _turn_of(run: PastRun, clip: Clip) -> Matrix:
 
 
 def _pictures(clip: Clip, take: Take, console: Console) -> Sequence[bytes]:
-    """The picture of every row of the run as a JPEG; a missing one is that before it."""
+    """The picture of every row of the run as a JPEG; a missing one is replaced by the one
+    before."""
     if len(take.frame) > MOST_PICTURES:
         raise RetouchError(
             f"{len(take.frame)} frames are too many for the page: track parts of the video, of at "

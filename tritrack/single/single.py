@@ -1,4 +1,4 @@
-"""Any video of one camera that stands still, to an animation: the thesis's way (T1)."""
+"""From any video of one static camera to an animation: the thesis's use (T1)."""
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -45,27 +45,27 @@ from tritrack.single.overlay_film import write_overlay
 from viewer.room.background_source import LOOKED_AT, background_of_film
 
 PASSES: Final = ("learning the room", "cutting out", "posing", "drawing")
-"""What is done with all frames of a video, one after the other."""
+"""The passes over a video, one after the other."""
 UNUSABLE: Final = (
     *(SettingsError, ClipError, DecoderDied, Undecodable),
     *(MaskFileError, NotesError, CannotResume, OtherRun),
 )
-"""What is wrong with one video, and lets the others be followed."""
+"""Errors of one video that do not affect the others."""
 
 
 class Given(NamedTuple):
-    """What the user says of all videos."""
+    """The user's options for all videos."""
 
     notes: Path | None = None
-    """Instead of the notes beside each."""
+    """Replaces the notes beside each."""
     background: Path | None = None
     """A picture of the scene without a person."""
     resume: bool = False
-    """Go on with what was cut short, and leave out what is done."""
+    """Resume interrupted runs, and skip complete ones."""
     force: bool = False
-    """Write over the runs of other videos."""
+    """Overwrite runs of other videos."""
     landmarks: str | None = None
-    """Where joints of the pictures come from, instead of what settings say."""
+    """Source of the landmarks, in place of the settings'."""
 
 
 class Job(NamedTuple):
@@ -84,16 +84,16 @@ def single_all(
     settings: Settings,
     console: Console,
 ) -> Facts:
-    """Follow the person in video after video, write a run folder for each, and say what it has.
+    """Track the person in video after video, write a run folder for each, and report it.
 
-    Of several, one that cannot be used is said and left out; the others are followed.
+    With several videos, an unusable one is reported and skipped.
 
     Args:
         videos: Videos of one camera, clip folders, settings files, or masks (`mask_file`).
         out: Gets a folder for each.
-        given: What the user says of all of them.
-        settings: Mode, size and whatever else a settings file does not say.
-        console: For progress, warnings and errors.
+        given: The user's options for all of them.
+        settings: Mode, size and everything else that a settings file does not set.
+        console: Shows progress, warnings and errors.
 
     Raises:
         SettingsError, ClipError, DecoderDied, Undecodable, MaskFileError, NotesError: When the only
@@ -133,7 +133,7 @@ def _refuse_the_same(path: Path, folder: Path, there: bool) -> None:
 
 
 def _tell_of_two(job: Job, console: Console) -> None:
-    """Which of two cameras is followed."""
+    """Which of two cameras is tracked."""
     if len(footage_of(job.settings)) > 1:
         say(
             console,
@@ -150,11 +150,11 @@ def name_of(path: Path) -> str:
 
 
 def job_of(path: Path, given: Given, settings: Settings) -> Job:
-    """What a path of the command line stands for.
+    """The input for a path of the command line.
 
     Raises:
-        SettingsError, ClipError, MaskFileError, NotesError: When it cannot be read, or names
-            nothing to look at.
+        SettingsError, ClipError, MaskFileError, NotesError: When it cannot be read, or names no
+            source.
     """
     if is_mask_file(path):
         masks = read_masks(path)
@@ -178,7 +178,7 @@ def job_of(path: Path, given: Given, settings: Settings) -> Job:
 
 
 def _run_of(job: Job) -> RunOf:
-    """Its videos; a clip folder's second one is none of its."""
+    """Its videos; a clip folder's second one does not belong to them."""
     films = [view.source for view in footage_of(job.settings)][:1]
     return run_of("single", [str(job.path)] if job.masks is not None else films)
 
@@ -186,7 +186,7 @@ def _run_of(job: Job) -> RunOf:
 def _kept(
     job: Job, wanted: Wanted, decoder: Decoder, console: Console, begun: Callable[[str], Tell]
 ) -> Facts:
-    """Follow one video; what is done of it is on disk while that goes on."""
+    """Track one video; intermediate results are on disk meanwhile."""
     if job.masks is not None:
         return follow(job, wanted.folder, decoder, console, begun, Begun(InMemory(), {}))
     with resumable(wanted, console) as run:
@@ -201,9 +201,9 @@ def follow(
     begun: Callable[[str], Tell],
     run: Begun,
 ) -> Facts:
-    """Follow one video and write its run folder; what the summary tells of it, and the overlay.
+    """Track one video and write its run folder; returns its summary, and the overlay.
 
-    Poses come first: whatever happens to the pictures and videos, these are kept.
+    Poses are written first, so that they are kept whatever happens to pictures and videos.
 
     Raises:
         ClipError, DecoderDied: When it cannot be used.
@@ -242,13 +242,13 @@ def _found(job: Job, decoder: Decoder, begun: Callable[[str], Tell], work: Work)
 
 
 def mean_confidence(arrays: Arrays) -> float:
-    """The mean confidence of the joints in the frames that have a pose; 0 where none has."""
+    """Mean confidence of the joints in the frames with a pose; 0 where there is none."""
     posed = np.isfinite(arrays["joints_m"]).all(axis=(1, 2))
     return round(float(arrays["confidence"][posed].mean()), 3) if posed.any() else 0.0
 
 
 def line_of(name: str, facts: Facts) -> str:
-    """What was followed, how well, and what to open, in one line."""
+    """Source, quality and main file of a run, in one line."""
     share = facts["frames_with_pose"] / max(1, facts["frames"])
     believed = facts.get("believed")
     return (
