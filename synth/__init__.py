@@ -1,1 +1,1 @@
-"""Clips whose truth is known."""
+"""Synthetic clips with ground truth."""

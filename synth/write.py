@@ -1,4 +1,4 @@
-"""Clips of performances on disk: a video a camera, what they are of, and the truth."""
+"""Clips of performances on disk: a video per camera, labels, and ground truth."""
 
 import itertools
 import json
@@ -24,31 +24,30 @@ FPS: Final = 15.0
 """The paper's frame rate (P1)."""
 JPEG_QUALITY: Final = 95
 Packed = NDArray[np.uint8]
-"""A mask as `np.packbits(mask, axis=1)` leaves it."""
+"""A mask packed by `np.packbits(mask, axis=1)`."""
 
 PHASES: Final = ("empty", "tpose", "transition", "motion")
 ALONE: Final = ("free", "fall", "stream")
-"""Motions that are one take each, not one of each posture."""
+"""Motions that are one take each, not one per posture."""
 ROOM_SEED: Final = 7919
-"""Keeps the rooms of one set apart from those of the next: a prime larger than any set."""
+"""Factor that separates the room seeds of successive sets: a prime larger than any set."""
 
 
 class SynthError(ValueError):
-    """A set of clips that cannot be made: the text says what to ask for instead."""
+    """A set of clips that cannot be made: the text names the cure."""
 
 
 class ClipSet(NamedTuple):
-    """What a set of clips shows."""
+    """Content of a set of clips."""
 
     motion: Literal["postures", "free", "fall", "stream"]
-    """The named postures; people who turn and move at random; who do, fall, lie and get up; all
-    postures in one take."""
+    """The named postures; free motion; free motion with falls; all postures in one take."""
     performers: int = 1
-    """How many people; the first of seed s is person(s * performers)."""
+    """Number of people; the first of seed s is person(s * performers)."""
     takes: int = 1
-    """Of each posture by each person."""
+    """Number of takes of each posture by each person."""
     seed: int = 0
-    """The same one gives the same clips, byte for byte."""
+    """The same seed gives the same clips, byte for byte."""
     postures: tuple[str, ...] = POSTURES
     """Which ones; not asked for when the motion is free or a fall."""
     cameras: int = 2

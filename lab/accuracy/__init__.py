@@ -1,1 +1,1 @@
-"""How exact tracking is on clips with a truth."""
+"""Accuracy of tracking, on clips with ground truth."""

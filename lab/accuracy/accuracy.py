@@ -1,4 +1,4 @@
-"""How far tracked joints are from the true ones: the yardstick's numbers."""
+"""Distances of tracked joints from the true ones, as the scoring script defines them."""
 
 from collections.abc import Sequence
 from typing import Final, NamedTuple
@@ -15,7 +15,7 @@ JOINTS: Final = tuple(
     for name in ("shoulder", "elbow", "wrist", "hip", "knee", "ankle")
     for side in "lr"
 )
-"""What is scored."""
+"""The scored joints."""
 INDEX: Final = {name: i for i, name in enumerate(JOINTS)}
 
 INNER: Final = {
@@ -27,35 +27,36 @@ INNER: Final = {
 """The inner angles: each between two limbs that meet at the joint in the middle."""
 
 LOST_MM: Final = 200.0
-"""A frame with a joint further off than this is lost."""
+"""Error of a joint, mm, above which its frame is lost."""
 
 TINY_M2: Final = 1e-12
-"""Keeps limbs without length from being divided by, as the yardstick does it."""
+"""Added to limbs' lengths so that none is divided by 0, as in the scoring script."""
 
 
 class Mismatch(ValueError):
-    """A run or a truth whose arrays are not those that they should be; the text says which."""
+    """A run or a ground truth with unexpected arrays; the text names them."""
 
 
 class Compared(NamedTuple):
-    """One clip: the frames that have a true and a tracked person, and how many had a true one."""
+    """One clip: the frames with a true and a tracked person, and the number of frames with a
+    true one."""
 
     frames: NDArray[np.int64]
-    """(n,) of camera 1's video."""
+    """(n,) frames of camera 1's video."""
     rows: NDArray[np.int64]
-    """(n,) of the truth."""
+    """(n,) rows of the ground truth."""
     tracked_m: Vector
-    """(n, 12, 3) world."""
+    """(n, 12, 3) world, true."""
     true_m: Vector
-    """(n, 12, 3) world."""
+    """(n, 12, 3) world, tracked."""
     confidence: Vector
-    """(n, 12) in [0, 1]."""
+    """(n, 12) confidence in [0, 1]."""
     due: int
-    """Frames with a true person."""
+    """Number of frames with a true person."""
     empty: int
-    """Frames without one."""
+    """Number of frames without one."""
     ghosts: int
-    """Frames without one that have a pose."""
+    """Number of frames without one that have a pose."""
 
     @property
     def off_mm(self) -> Vector:
@@ -64,14 +65,14 @@ class Compared(NamedTuple):
 
 
 def compare(poses: Arrays, truth: Arrays) -> Compared:
-    """Bring the rows of a run and of a truth together.
+    """Match the rows of a run with those of a ground truth.
 
     Args:
-        poses: What `poses.npz` holds.
-        truth: What `truth.npz` holds. Without `frames_cam1` frame and row are the same.
+        poses: Content of `poses.npz`.
+        truth: Content of `truth.npz`. Without `frames_cam1` frame and row are the same.
 
     Raises:
-        Mismatch: When a joint is not named, or an array has another shape than it should.
+        Mismatch: When a joint is missing, or an array has an unexpected shape.
     """
     _refuse_other_shapes(poses, "frame", "joints_m")
     _refuse_other_shapes(truth, "present", "joints3d")
@@ -112,7 +113,7 @@ def _refuse_other_shapes(arrays: Arrays, rows: str, places: str) -> None:
 
 
 def picked(of_all: ArrayLike, names: NDArray[np.str_]) -> Vector:
-    """The twelve joints, in their order, of an array (n, joints, ...).
+    """The twelve joints, in order, of an array (n, joints, ...).
 
     Raises:
         Mismatch: When one of them is not among the names.
@@ -129,11 +130,11 @@ def _places(names: NDArray[np.str_]) -> list[int]:
 
 
 def summary(clips: Sequence[Compared]) -> Facts:
-    """All clips together, every frame and joint alike; NaN where nothing was to be measured.
+    """All clips together, with equal weight for every frame and joint; NaN without any.
 
-    `abs_mm` is the distance in the world, `root_mm` after moving the middles of the hips together,
-    `pa_mm` after the best similarity of each frame; `between` holds the 95 % intervals of each that
-    the choice of clips leaves; `lost` counts frames without a pose too.
+    `abs_mm` is the distance in the world, `root_mm` after aligning the middles of the hips, `pa_mm`
+    after the best similarity of each frame; `between` holds their 95 % intervals under resampling
+    of clips; `lost` counts frames without a pose too.
     """
     tracked = np.concatenate([clip.tracked_m for clip in clips])
     true = np.concatenate([clip.true_m for clip in clips])
@@ -162,7 +163,7 @@ def summary(clips: Sequence[Compared]) -> Facts:
 
 
 def per_joint(clips: Sequence[Compared]) -> dict[str, Facts]:
-    """Distance in the world of each joint, mm, and its 95 % intervals."""
+    """Distance of each joint in the world, mm, and its 95 % intervals."""
     told = {}
     for i, name in enumerate(JOINTS):
         off = [clip.off_mm[:, i] for clip in clips]
@@ -171,7 +172,7 @@ def per_joint(clips: Sequence[Compared]) -> dict[str, Facts]:
 
 
 def spread(values: Vector) -> dict[str, float]:
-    """Mean, median and 95th percentile; NaN of nothing."""
+    """Mean, median and 95th percentile; NaN without values."""
     if not values.size:
         return {"mean": np.nan, "median": np.nan, "p95": np.nan}
     median, p95 = np.percentile(values, (50, 95)).tolist()
@@ -199,7 +200,7 @@ def rooted(joints_m: Vector) -> Vector:
 
 
 def aligned(joints_m: Vector, onto_m: Vector) -> Vector:
-    """Each frame moved, turned and scaled so that it lies on another as well as it can.
+    """Each frame translated, rotated and scaled to fit another as well as possible.
 
     Source: Umeyama 1991, least squares of similarities, eqs. (40)-(43).
     """

@@ -1,4 +1,4 @@
-"""Pictures of the numbers: how errors are spread, and what confidence is worth."""
+"""Plots of accuracy: the distribution of errors, and the reliability of confidence."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -15,12 +15,12 @@ if TYPE_CHECKING:
 
 
 def plot_all(clips: Sequence[Compared], report: Facts, out: Path) -> dict[str, str]:
-    """Write every plot as PNG: what it shows, and its file.
+    """Write every plot as PNG; returns its caption and its file.
 
     Args:
-        clips: What was compared; at least one frame in all.
+        clips: The compared clips; at least one frame in all.
         report: The numbers: `per_joint`, `confidence`.
-        out: Folder.
+        out: Output folder.
 
     Raises:
         OSError: When a file cannot be written.

@@ -1,4 +1,4 @@
-"""The page of a tracking report: tables, plots and the worst frames, readable without network."""
+"""The page of a tracking report: tables, plots and the worst frames, usable offline."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -9,7 +9,7 @@ from runtime.terminal import counted
 
 
 def headline(report: Facts) -> Facts:
-    """The figures that are looked at first."""
+    """The main figures."""
     return {
         **report["all"],
         "silhouettes_iou": report["silhouettes"]["mean"],
@@ -33,7 +33,7 @@ def line(report: Facts) -> str:
 
 
 def page_of(report: Facts) -> str:
-    """The report as a page; its pictures stand beside it."""
+    """The report as a page; its pictures are beside it."""
     given = {**report, "number": _number, "percent": _share, "between": _between}
     return rendered(__package__, "accuracy_report.html", given)
 
@@ -43,7 +43,7 @@ def _number(value: float, places: int = 1) -> str:
 
 
 def _between(told: Mapping[str, Sequence[float]], name: str) -> str:
-    """The interval of a figure, in brackets; nothing where there is none."""
+    """The interval of a figure, in brackets; "" without one."""
     if name not in told:
         return ""
     low, high = told[name]

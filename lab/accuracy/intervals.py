@@ -1,4 +1,4 @@
-"""How far figures of accuracy might have come out otherwise, had other clips been recorded."""
+"""Bootstrap intervals of accuracy figures over the choice of clips."""
 
 from collections.abc import Sequence
 from typing import Final
@@ -9,24 +9,24 @@ from numpy.typing import NDArray
 from common.body.body import Vector
 
 DRAWN: Final = 1000
-"""Sets of clips that are drawn."""
+"""Number of bootstrap samples."""
 BETWEEN: Final = (2.5, 97.5)
-"""Percentiles of what they give: 95 % intervals."""
+"""Percentiles of the results: 95 % intervals."""
 SEED: Final = 0
 
 
 def intervals(clips: Sequence[Vector]) -> dict[str, tuple[float, float]]:
     """95 % intervals of the mean, the median and the 95th percentile of values of many clips.
 
-    Clips are drawn with replacement, as many as there are: values of one clip go wrong together, so
-    single values would make intervals far too narrow. Clips of one person do so too; of few people
-    the intervals are narrower than those that other people would need.
+    Clips are drawn with replacement: errors within one clip are correlated, so drawing single
+    values would make intervals far too narrow. Clips of one person are correlated too; with few
+    people the intervals are too narrow for other people.
 
     Args:
-        clips: Of each clip all its values; an empty one counts as a clip without values.
+        clips: For each clip all its values; an empty one counts as a clip without values.
 
     Returns:
-        By the names of `accuracy.spread`; empty where there are less than two clips with values.
+        By the names of `accuracy.spread`; empty with less than two clips with values.
     """
     held = [clip.ravel() for clip in clips if clip.size]
     if len(held) < 2:
@@ -50,7 +50,7 @@ def _figures(
     values: Vector,
     clip_of: NDArray[np.int64],
 ) -> tuple[float, float, float]:
-    """Mean, median and 95th percentile where each clip is there so many times."""
+    """Mean, median and 95th percentile with the given multiplicity of each clip."""
     below = times[clip_of].cumsum()
     median, p95 = values[below.searchsorted([0.5 * below[-1], 0.95 * below[-1]])].tolist()
     return float(times @ sums / (times @ counts)), median, p95

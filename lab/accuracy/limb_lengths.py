@@ -1,4 +1,4 @@
-"""How well limbs are measured: their lengths against the true ones."""
+"""Accuracy of limb lengths."""
 
 from collections.abc import Sequence
 from typing import Final
@@ -25,7 +25,7 @@ SEGMENTS: Final[dict[str, tuple[tuple[tuple[str, ...], tuple[str, ...]], ...]]] 
     "shoulder width": ((("l_shoulder",), ("r_shoulder",)),),
     "hip width": ((("l_hip",), ("r_hip",)),),
 }
-"""Between which joints, or middles of joints, a segment lies; both sides of those that have two."""
+"""The joints, or middles of joints, at a segment's ends; both sides of paired segments."""
 
 
 def segments_m(joints_m: Vector) -> dict[str, Vector]:
@@ -52,13 +52,13 @@ def body_joints_m(bdp: Bdp) -> Vector:
 def length_errors(clips: Sequence[Compared], bodies: Sequence[Bdp | None]) -> Facts:
     """Mean error of every segment, mm: of the measured body, of joints, of their medians.
 
-    The true length of a body's segment is its median over the clip; published joints are held to
-    the true ones of the same frame, their medians over a clip to the true medians. `off` is the
-    mean size of the error, `bias` its mean.
+    The true length of a body's segment is its median over the clip; published joints are compared
+    with the true ones of the same frame, their medians over a clip with the true medians. `off` is
+    the mean absolute error, `bias` the mean error.
 
     Args:
-        clips: Those that were tracked.
-        bodies: What was measured in each; None where nothing was.
+        clips: The tracked clips.
+        bodies: The body measured in each; None where there is none.
     """
     measured: dict[str, list[float]] = {name: [] for name in SEGMENTS}
     published: dict[str, list[Vector]] = {name: [] for name in SEGMENTS}

@@ -1,4 +1,4 @@
-"""Whether confidence means something: how often joints are near where they are said to be."""
+"""Reliability of the confidence: how often joints of a given confidence are near the truth."""
 
 from collections.abc import Sequence
 from typing import Final
@@ -11,11 +11,11 @@ from common.npz_file import Facts
 from lab.accuracy.accuracy import JOINTS, Compared
 
 NEAR_MM: Final = 50.0
-"""Confidence c is to mean: nearer than this with probability c."""
+"""Distance, mm, within which a joint lies with probability c, if its confidence is c."""
 BINS: Final = 10
-"""Of equal width, from 0 to 1."""
+"""Number of bins of equal width, from 0 to 1."""
 COUNTS: Final = 0.01
-"""A bin with less than this share of all joints says nothing certain."""
+"""Share of all joints that a bin needs to count."""
 
 
 def trust(clips: Sequence[Compared]) -> Facts:
@@ -36,7 +36,7 @@ def trust(clips: Sequence[Compared]) -> Facts:
 
 
 def reliability(confidence: Vector, near: NDArray[np.bool_]) -> list[dict[str, float]]:
-    """Of each bin of confidence: from, to, count, mean confidence, share that was near."""
+    """For each bin of confidence: from, to, count, mean confidence, share of near joints."""
     edges = np.linspace(0.0, 1.0, BINS + 1)
     place = np.clip((confidence.ravel() * BINS).astype(int), 0, BINS - 1)
     counts = np.bincount(place, minlength=BINS)
@@ -55,15 +55,15 @@ def reliability(confidence: Vector, near: NDArray[np.bool_]) -> list[dict[str, f
 
 
 def gap(bins: Sequence[dict[str, float]], joints: int) -> float:
-    """The furthest that a bin which counts is from its promise; NaN of nothing."""
+    """Largest difference between share and confidence of a bin that counts; NaN without any."""
     gaps = [abs(one["confidence"] - one["near"]) for one in bins if one["count"] > COUNTS * joints]
     return max(gaps, default=np.nan)
 
 
 def auc(confidence: Vector, near: NDArray[np.bool_]) -> float:
-    """How likely a joint that is near has more confidence than one that is not.
+    """Probability that a near joint has more confidence than a far one.
 
-    Equal ones count half: a constant has 0.5. NaN where all are near, or none.
+    Ties count half: a constant has 0.5. NaN where all are near, or none.
 
     Source: Mann & Whitney 1947: the statistic U over its greatest value.
     """
@@ -78,7 +78,7 @@ def auc(confidence: Vector, near: NDArray[np.bool_]) -> float:
 def roc(confidence: Vector, near: NDArray[np.bool_]) -> tuple[Vector, Vector]:
     """The ROC curve from (0, 0) to (1, 1): shares of the far and of the near at each threshold.
 
-    What has the same confidence is taken together, so the area beneath is what `auc` says.
+    Equal confidences are one point, so the area below is the value of `auc`.
     """
     order = np.argsort(-confidence.ravel(), kind="stable")
     said, came = confidence.ravel()[order], near.ravel()[order]

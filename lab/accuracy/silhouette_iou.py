@@ -1,4 +1,4 @@
-"""How much of the true silhouette is found: intersection over union, frame by frame."""
+"""Accuracy of silhouettes: intersection over union, frame by frame."""
 
 from typing import Final, NamedTuple
 
@@ -19,28 +19,28 @@ from viewer.room.background_source import opening_of_view
 from viewer.silhouette import silhouette
 
 HALF: Final = 0.5
-"""A pixel of a smaller true mask belongs to the person when at least half of it does."""
+"""Share of a pixel that the person must cover in a reduced true mask."""
 
 
 class Overlap(NamedTuple):
     """One view of one clip."""
 
     iou: Vector
-    """(n,) of the frames with a true silhouette."""
+    """(n,) IoU of the frames with a true silhouette."""
     empty: int
-    """Frames without one."""
+    """Number of frames without one."""
     ghosts: int
-    """Frames without one that got one."""
+    """Number of frames without one in which a silhouette was found."""
 
 
 def overlaps(settings: Settings, truth: Arrays, decoders: Decoders) -> dict[str, Overlap]:
-    """The silhouettes of every view that has true masks, as a viewer of these settings finds them.
+    """The silhouettes of every view with true masks, as a viewer with these settings finds them.
 
     Args:
-        settings: Of the run; they name the clip.
-        truth: Its truth: mask_cam1, mask_cam2 packed along their rows, mask_shape;
-            a view without them is left out.
-        decoders: For the videos.
+        settings: The run's settings; they name the clip.
+        truth: The clip's ground truth: mask_cam1, mask_cam2 packed along their rows, mask_shape; a
+            view without them is left out.
+        decoders: Read the videos.
 
     Raises:
         ClipError: When the clip cannot be used.
@@ -76,7 +76,8 @@ def _of_view(
 
 
 def shrunk(mask: NDArray[np.uint8], size: tuple[int, int]) -> Mask:
-    """A mask of zeros and ones at another size (width, height): where HALF of a pixel is covered.
+    """A mask of zeros and ones at another size (width, height): 1 where at least HALF of a pixel is
+    covered.
 
     At half the size that is a mean of 2x2 of at least one half.
     """
@@ -85,6 +86,6 @@ def shrunk(mask: NDArray[np.uint8], size: tuple[int, int]) -> Mask:
 
 
 def iou(one: Mask, other: Mask) -> float:
-    """Intersection over union; 1 of two empty masks, which agree."""
+    """Intersection over union; 1 for two empty masks."""
     union = int(np.count_nonzero(one | other))
     return int(np.count_nonzero(one & other)) / union if union else 1.0

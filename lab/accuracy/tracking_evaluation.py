@@ -1,4 +1,4 @@
-"""Tracking held against the truth of clips: every figure of accuracy, as a report."""
+"""Evaluation of tracking against ground truth: all accuracy figures, as a report."""
 
 import json
 from collections.abc import Callable, Mapping, Sequence
@@ -27,24 +27,24 @@ from runtime.store.clip_paths import run_names, without_plain_files
 from runtime.terminal import bar, json_text, warn
 
 MAX_BYTES: Final = 1 << 30
-"""No run and no truth is larger."""
+"""Upper bound of a run and of a ground truth, bytes."""
 IN_POSES: Final = ("frame", "joints_m", "joint_names", "confidence")
 IN_TRUTH: Final = ("present", "joints3d", "joint_names")
 
 
 class EvaluationError(ValueError):
-    """A run or a truth that cannot be scored; the text names it and the cure."""
+    """A run or a ground truth that cannot be scored; the text names it and the cure."""
 
 
 class Case(NamedTuple):
-    """One clip that was tracked, and its truth."""
+    """One tracked clip, and its ground truth."""
 
     settings: Settings
-    """Of the run."""
+    """The run's settings."""
     performer: str
     posture: str
     bdp: Bdp | None
-    """The body as it was measured; None where no person was seen."""
+    """The measured body; None where no person was seen."""
     compared: Compared
     truth: Arrays
 
@@ -57,20 +57,20 @@ def evaluate_tracking(
     size: str | None,
     console: Console,
 ) -> Facts:
-    """Score clips with a truth, and write `report.json`, `report.html` and their pictures.
+    """Score clips with ground truth, and write `report.json`, `report.html` and their pictures.
 
     Args:
         paths: Clip folders, settings files of clips, or run folders; a run and a clip of one name
             belong together, and a run alone names its clip.
-        out: Folder of the report; made where it is not there.
-        runs: Holds runs by the names of their clips: those that stand there are read, the others
-            are tracked into it. None: all clips are tracked afresh, into `runs` within `out`.
-        mode: How clips are tracked; None: as their settings say.
+        out: Folder of the report; created where missing.
+        runs: Folder of runs by the names of their clips: existing ones are read, the others are
+            tracked into it. None: all clips are tracked again, into `runs` within `out`.
+        mode: Mode for tracking; None: that of the settings.
         size: As `mode`.
-        console: For progress and warnings.
+        console: Shows progress and warnings.
 
     Returns:
-        What `report.json` holds.
+        The content of `report.json`.
 
     Raises:
         EvaluationError: When nothing can be scored, or the report cannot be written.
@@ -102,9 +102,9 @@ def _runs_of(
     size: str | None,
     console: Console,
 ) -> dict[str, tuple[Path, Path | None]]:
-    """The run folder of every name, tracked now where none stands, and its clip where given.
+    """The run folder of every name, tracked now where missing, and its clip where given.
 
-    A clip that has no truth is said and left out.
+    A clip without ground truth is reported and left out.
     """
     given = without_plain_files(paths, console)
     stand = run_names([path for path in given if _is_run(path)])
@@ -133,7 +133,7 @@ def _truth_of(settings: Settings) -> Path:
 
 
 def _case(run: Path, clip: Path | None, mode: Mode | None, size: str | None) -> Case:
-    """A run with its truth."""
+    """A run with its ground truth."""
     try:
         facts = json.loads((run / "summary.json").read_text())
         settings = settings_of(facts["settings"])
@@ -208,9 +208,10 @@ def _grouped(cases: Mapping[str, Case], key: Callable[[Case], str]) -> dict[str,
 
 
 def _silhouettes(cases: Mapping[str, Case], found: Mapping[str, Mapping[str, Overlap]]) -> Facts:
-    """Mean IoU of every clip and view, of performers, of all; `worst` is the least of any view.
+    """Mean IoU of every clip and view, by performer, and of all; `worst` is the smallest of any
+    view.
 
-    Clips whose truth has no masks are left out.
+    Clips whose ground truth has no masks are left out.
     """
     per_clip: dict[str, dict[str, float]] = {}
     per_performer: dict[str, list[float]] = {}

@@ -1,4 +1,5 @@
-"""The worst frames as pictures: what both cameras saw, the tracked stick and the true one."""
+"""Pictures of the worst frames: both cameras' pictures, the tracked stick figure and the true
+one."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -20,13 +21,13 @@ from runtime.offline.lockstep import Decoders
 from viewer.capture import recorded
 
 MOST: Final = 10
-"""Frames that are shown."""
+"""Number of frames shown."""
 APART: Final = 10
-"""Of this many frames of a clip in a row one is shown: those around it show the same fault."""
+"""Distance of shown frames in a clip: neighbours have the same fault."""
 SHOWN: Final = "4096x4096"
-"""Bound of the pictures: as they were recorded."""
+"""Bound of the pictures' size: the recorded one."""
 HEIGHT_PX: Final = 480
-"""Of a picture that is shown; small ones are enlarged, so that limbs can be told apart."""
+"""Height of a shown picture, pixels; small ones are enlarged, so that limbs are visible."""
 
 STICKS: Final = (
     ("l_shoulder", "r_shoulder"),
@@ -39,28 +40,28 @@ STICKS: Final = (
 )
 TRUE: Final = ((130, 255, 170), (40, 150, 40))
 TRACKED: Final = ((255, 140, 60), (60, 90, 255))
-"""Blue, green, red of the left and the right side: who is taken for the other must be seen."""
+"""Blue, green, red of the left and the right side: exchanged sides must be visible."""
 FINE: Final = 4
-"""Binary digits of a pixel's fraction, as OpenCV draws them."""
+"""Fractional bits of a pixel in OpenCV's drawing functions."""
 
 
 class WorstFrame(NamedTuple):
-    """A frame that went badly."""
+    """A frame with a large error."""
 
     clip: str
     place: int
-    """Which of the clip's compared frames it is."""
+    """Index among the clip's compared frames."""
     frame: int
-    """Of camera 1's video."""
+    """Frame of camera 1's video."""
     mean_mm: float
-    """Over its joints."""
+    """Mean error of its joints."""
     joint: str
-    """The worst one."""
+    """The largest error of a joint."""
     joint_mm: float
 
 
 def worst(clips: Mapping[str, Compared], most: int = MOST) -> list[WorstFrame]:
-    """The frames with the largest mean error, one of any APART in a row of a clip."""
+    """The frames with the largest mean error, at most one within any APART frames of a clip."""
     mean = [
         (float(off), name, place)
         for name, clip in clips.items()
@@ -87,15 +88,15 @@ def draw(
     out: Path,
     decoders: Decoders,
 ) -> list[Facts]:
-    """Write a picture of each frame, and say what it shows.
+    """Write a picture of each frame; returns its description.
 
     Args:
-        frames: As `worst` found them.
-        clips: What was compared, by clip.
-        truths: What `truth.npz` holds, by clip.
-        settings: Of the runs, by clip.
-        out: Folder of the pictures.
-        decoders: For the videos.
+        frames: Result of `worst`.
+        clips: The compared clips, by name.
+        truths: Content of `truth.npz`, by clip.
+        settings: Settings of the runs, by clip.
+        out: Output folder.
+        decoders: Read the videos.
 
     Raises:
         ClipError: When a clip cannot be used.
@@ -131,7 +132,7 @@ def _shown(
 
 
 def _taken(view: ClipView, index: int, decoders: Decoders) -> tuple[Image, float]:
-    """A frame of a video at HEIGHT_PX, and how many times as large as it was recorded."""
+    """A frame of a video at HEIGHT_PX, and its enlargement."""
     last = None
     for frame in recorded(view, 1, decoders.of[view.number]):
         last = frame.picture

@@ -1,4 +1,4 @@
-"""The figures of this machine: a match, a search, a tracked clip, memory, loading."""
+"""Benchmarks of this machine: a match, a search, a tracked clip, memory, loading."""
 
 import json
 import os
@@ -46,14 +46,14 @@ from viewer.silhouette import silhouette
 
 SMALL, LARGE = (160, 120), (640, 480)
 PERFORMER_SEED: Final = 90_002
-"""Of a person that no model was trained on: training uses seeds below 1,000."""
+"""Seed of a person outside the training data, which uses seeds below 1,000."""
 FILMED: Final = (320, 240)
 
 
 def bench(quick: bool = False) -> Facts:
-    """Measure one thing after the other: (machine, figures), ready for JSON.
+    """Measure one item after the other: (machine, figures), ready for JSON.
 
-    Times are the least of several repeats: what else runs on the machine only adds to them.
+    Times are the minimum of several repeats: other load on the machine only adds to them.
 
     Args:
         quick: Fewer repeats, and no live run.
@@ -69,13 +69,13 @@ TRACKED: Final[tuple[tuple[Mode, str, float], ...]] = (
     ("default", "160x120", 400.0),
     ("default", "320x240", 200.0),
 )
-"""Modes and sizes that a clip is tracked in, and how many frame pairs a second are asked for."""
+"""Modes and sizes in which a clip is tracked, and the required frame pairs per second."""
 REPEATS: Final = 5
-"""A clip is tracked so often; the fastest counts."""
+"""Number of repeats per clip; the fastest counts."""
 
 
 def measured(quick: bool) -> Iterator[Measured]:
-    """Every figure, as soon as it is known."""
+    """All figures, each as soon as it is measured."""
     repeats = 3 if quick else 40
     yield from matching(SMALL, 0.2, repeats)
     yield from matching(LARGE, 0.5, repeats)
@@ -97,7 +97,7 @@ def measured(quick: bool) -> Iterator[Measured]:
 
 
 def matching(size: tuple[int, int], target_us: float, repeats: int) -> Iterator[Measured]:
-    """A limb match at one size: alone, with its place in the picture, and as OpenCV would."""
+    """A limb match at one size: alone, with placing it in the picture, and with OpenCV."""
     at = f"{size[0]}x{size[1]}"
     given = scene(size)
     matches = given.primitives.shape[0] * given.primitives.shape[1]
@@ -129,14 +129,14 @@ def searching(size: tuple[int, int], target: float, repeats: int) -> Iterator[Me
 
 
 def digesting(repeats: int) -> Measured:
-    """How long a process takes to know whether what was compiled is of its sources."""
+    """Time for a process to check that its compiled code belongs to its sources."""
     return Measured(
         "digest of the sources", 1e3 * least_s(lambda: digest_of(ROOT), repeats), "ms", 20.0
     )
 
 
 def loading() -> Measured:
-    """How long a new process takes to load what is compiled, imports aside."""
+    """Time for a new process to load its compiled code, without imports."""
     loaded_s()
     code = "from lab.bench.bench import loaded_s; print(loaded_s())"
     told = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
@@ -144,7 +144,7 @@ def loading() -> Measured:
 
 
 def loaded_s() -> float:
-    """Compile or load all that a viewer and the integrator run; the seconds that it took."""
+    """Compile or load all code of a viewer and the integrator; returns the seconds taken."""
     began = time.perf_counter()
     settings = Settings()
     background = learn([np.full((SMALL[1], SMALL[0], 3), 128, np.uint8)])
@@ -157,7 +157,8 @@ def loaded_s() -> float:
 
 
 def tracking(settings: Settings, folder: Path, repeats: int, target: float) -> Iterator[Measured]:
-    """A clip of two videos tracked to its poses.npz, in one process, and where the time goes."""
+    """A clip of two videos tracked to its poses.npz, in one process, with the time of each
+    stage."""
     seconds: dict[str, float] = {}
     frames = 0
     with Decoders() as decoders:
@@ -196,7 +197,7 @@ def _silhouettes_s(settings: Settings, decoders: Decoders) -> float:
 
 
 def memory(settings: Settings, folder: Path) -> Iterator[Measured]:
-    """Resident memory of each process of a live run without the page's browser side."""
+    """Resident memory of each process of a live run, without the page's browser."""
     settings = free_settings(msgspec.structs.replace(settings, page=PageSettings(port=0)))
     facts = live(settings, folder / "live", Console(quiet=True))
     for name, told in facts["processes"].items():
@@ -204,7 +205,7 @@ def memory(settings: Settings, folder: Path) -> Iterator[Measured]:
 
 
 def machine() -> Facts:
-    """What was measured on, and when."""
+    """The machine and the date."""
     try:
         told = Path("/proc/cpuinfo").read_text().splitlines()
         model = next(line.partition(":")[2].strip() for line in told if "model name" in line)
@@ -221,7 +222,7 @@ def machine() -> Facts:
 
 
 def table_of(result: Facts) -> Table:
-    """The figures as a table for a person."""
+    """The figures as a table."""
     facts = result["machine"]
     title = f"{facts['cpu']}, {facts['cores']} cores, load {facts['load_average'][0]}"
     table = Table("what", "measured", "unit", "target", title=title, title_justify="left")

@@ -1,4 +1,4 @@
-"""One figure of a benchmark, and the least time of a call."""
+"""One figure of a benchmark, and the minimum time of a call."""
 
 import time
 from collections.abc import Callable
@@ -12,11 +12,11 @@ class Measured(NamedTuple):
     value: float
     unit: str
     target: float | None = None
-    """What the design asks for: a rate is to reach it, a time is not to exceed it."""
+    """Required value: a rate shall reach it, a time shall not exceed it."""
 
     @property
     def met(self) -> bool | None:
-        """Whether the target is reached; None where there is none."""
+        """Whether the requirement is met; None without one."""
         if self.target is None:
             return None
         return self.value >= self.target if self.unit.endswith("/s") else self.value <= self.target
@@ -25,7 +25,7 @@ class Measured(NamedTuple):
 def least_s(
     run: Callable[[], object], repeats: int, clock: Callable[[], float] = time.perf_counter
 ) -> float:
-    """Least seconds of a call; the first one, which may compile, does not count."""
+    """Minimum seconds of a call; the first one, which may compile, does not count."""
     run()
     least = float("inf")
     for _ in range(repeats):

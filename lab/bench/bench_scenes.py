@@ -1,4 +1,4 @@
-"""Synthetic matches to measure: limbs of a standing person over the drawn rest of the body."""
+"""Synthetic matches for benchmarks: limbs of a standing person over the drawn rest of the body."""
 
 from collections.abc import Callable
 from typing import Final, NamedTuple
@@ -18,24 +18,24 @@ from common.rig.camera import PAPER_ROTATIONS
 from viewer.paper.posed_model import PosedModel, model_over, view_at
 
 STATURE_SHARE: Final = 0.65
-"""Of a person in the picture's height, as in the development clips."""
+"""Height of the person over the picture's, as in the development clips."""
 MATCHES: Final = 9
-"""Of one limb over one rest: the most that a search makes (P41)."""
+"""Number of matches of one limb over one rest: a search's maximum (P41)."""
 SWAY_DEG: Final = 12.0
-"""Standard deviation of every angle around the rest: of a person who walks."""
+"""Standard deviation of every angle around the rest: that of a walking person."""
 RING: Final = np.linspace(0.0, 2.0 * np.pi, 48, endpoint=False)
-"""Points of a disc's contour as OpenCV gets it."""
+"""Number of points of a disc's contour for OpenCV."""
 
 
 class Scene(NamedTuple):
-    """Each arm and leg limb several times over the rest that it was taken from."""
+    """Each arm and leg limb several times over the rest that belongs to it."""
 
     size: tuple[int, int]
     body: Vector
     view: Vector
     seen: Bits
     limbs: NDArray[np.int64]
-    """(8,), as in LIMBS: those that a search moves."""
+    """(8,) indices in LIMBS: the limbs that a search moves."""
     poses: Vector
     """(8, MATCHES, 25)."""
     primitives: Vector
@@ -45,17 +45,17 @@ class Scene(NamedTuple):
 
     @property
     def matched(self) -> tuple[Floats, Bits, Bits, int]:
-        """What `match_all` takes."""
+        """Arguments of `match_all`."""
         return self.primitives, self.rests, self.seen, self.size[0]
 
     @property
     def placed(self) -> tuple[NDArray[np.int64], Floats, Vector, Vector, Bits, Bits, int]:
-        """What `match_placed` takes."""
+        """Arguments of `match_placed`."""
         return self.limbs, self.poses, self.body, self.view, self.rests, self.seen, self.size[0]
 
 
 def scene(size: tuple[int, int]) -> Scene:
-    """Matches at one size of the picture, the same ones every time."""
+    """Matches at one size of the picture, always the same ones."""
     random = np.random.default_rng(0)
     width, height = size
     body, view = body_vector(thesis_bdp(1.0)), _view(size, 1)
@@ -72,7 +72,7 @@ def scene(size: tuple[int, int]) -> Scene:
 
 
 def swayed(pose: Vector, random: np.random.Generator) -> Vector:
-    """A pose with all angles of arms and legs moved at random."""
+    """A pose with random angles of arms and legs."""
     changed = pose.copy()
     begin = POSE_INDEX["r_shoulder_x"]
     changed[begin:] += random.normal(0.0, SWAY_DEG, len(pose) - begin)
@@ -81,7 +81,8 @@ def swayed(pose: Vector, random: np.random.Generator) -> Vector:
 
 @compiled
 def match_all(primitives: Floats, rests: Bits, seen: Bits, width: int) -> int:
-    """Match every primitive over its rest; a sum of counts, so that nothing is left out."""
+    """Match every primitive over its rest; returns the sum of counts, so that nothing is
+    optimised away."""
     height, total = seen.shape[0], 0
     first, last = np.empty(height, np.int32), np.empty(height, np.int32)
     for i in range(primitives.shape[0]):
@@ -136,7 +137,7 @@ def by_opencv(given: Scene) -> Callable[[], int]:
 
 
 def model_pairs(size: tuple[int, int]) -> list[tuple[PosedModel, PosedModel]]:
-    """A person in the facade and in the flank view, each with a model a little off."""
+    """A person in the facade and in the flank view, each with a model slightly off."""
     random = np.random.default_rng(1)
     body = body_vector(thesis_bdp(1.0))
     pairs = []
@@ -157,14 +158,14 @@ def model_pairs(size: tuple[int, int]) -> list[tuple[PosedModel, PosedModel]]:
 
 
 def _view(size: tuple[int, int], viewer: int, off_px: tuple[float, float] = (0.0, 0.0)) -> Vector:
-    """The paper's camera; the navel is in the middle."""
+    """The paper's camera; the navel is in the middle of the picture."""
     width, height = size
     root = (width / 2 + off_px[0], height / 2 + off_px[1])
     return view_at(np.array(PAPER_ROTATIONS[viewer - 1]), STATURE_SHARE * height, root)
 
 
 def _polygon(primitive: Vector) -> NDArray[np.int32]:
-    """A limb's contour as a convex polygon of OpenCV's whole pixels."""
+    """A limb's contour as a convex polygon in OpenCV's whole pixels."""
     discs = [
         (x + r * np.cos(RING), y + r * np.sin(RING)) for x, y, r in primitive[:6].reshape(2, 3)
     ]

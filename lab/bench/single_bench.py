@@ -1,4 +1,4 @@
-"""How fast one camera's clip is followed, from its video to poses, once its background is known."""
+"""Speed of tracking one camera's clip, from its video to poses, with a known background."""
 
 import time
 from collections.abc import Iterator
@@ -17,17 +17,17 @@ from runtime.offline.film_tracking import Film, follow_clip
 from viewer.room.background_source import background_of_film
 
 ALONE: Final = (1,)
-"""The view that is followed."""
+"""The view that is tracked."""
 FOLLOWED: Final[tuple[tuple[Mode, str, float], ...]] = (
     ("default", "320x240", 200.0),
     ("thesis", "320x240", 200.0),
 )
-"""Modes and sizes that it is followed in, and how many frames a second are asked for."""
+"""Modes and sizes in which it is tracked, and the required frames per second."""
 
 
 class Times(NamedTuple):
-    """Least seconds of several runs over all frames; the decoder's by the clock, it is a process
-    of its own, the others' of this process, whatever else the machine does."""
+    """Minimum seconds of several runs over all frames: wall time for the decoder, which is a
+    separate process, and processor time of this process for the rest."""
 
     frames: int
     decoding_s: float
@@ -41,7 +41,7 @@ class Times(NamedTuple):
 
 
 def figures(settings: Settings, repeats: int, target: float) -> Iterator[Measured]:
-    """The rate, and what each part takes."""
+    """The frame rate, and each part's time."""
     at, found = f"{settings.mode}, {settings.size}", followed(settings, repeats)
     yield Measured(f"single, video to poses, {at}", found.frames_a_second, "frames/s", target)
     for what, value_ms in parts_ms(found).items():
@@ -49,18 +49,18 @@ def figures(settings: Settings, repeats: int, target: float) -> Iterator[Measure
 
 
 def parts_ms(found: Times) -> dict[str, float]:
-    """What each stage takes for a frame."""
+    """Time of each stage per frame."""
     parts_s = (found.decoding_s, found.silhouettes_s, found.poses_s)
     names = ("decoding of one view", "silhouettes of one view", "poses of one view")
     return {name: 1e3 * part_s / found.frames for name, part_s in zip(names, parts_s, strict=True)}
 
 
 def followed(settings: Settings, repeats: int) -> Times:
-    """Follow a clip's first camera again and again, as `tritrack single` does without calibration.
+    """Track a clip's first camera repeatedly, as `tritrack single` does without calibration.
 
     Args:
-        settings: Name the clip, the mode and the size of the working picture.
-        repeats: How often, after a first time that may compile.
+        settings: They name the clip, the mode and the size of the working picture.
+        repeats: Number of measured runs, after a first one that may compile.
 
     Raises:
         ClipError: When there is no such clip.

@@ -1,1 +1,1 @@
-"""Teaching the network of landmarks on videos that the user has, by another pose estimator."""
+"""Training of the landmark network on a user's videos, with another pose estimator as teacher."""

@@ -1,4 +1,4 @@
-"""A video's frames as examples: the window about the person, and the joints that a teacher sees."""
+"""A video's frames as examples: the window around the person, and the teacher's joints."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -28,41 +28,41 @@ from viewer.landmarks.landmark_window import Window, planes_of
 from viewer.room.background_source import background_of_film
 
 SIZE: Final = "640x480"
-"""Bound of the picture that windows are cut from."""
+"""Bound of the picture from which windows are cut."""
 MOST: Final = 3000
-"""Frames of one video, spread over it, that are looked at."""
+"""Number of examined frames of one video, evenly spaced."""
 TAUGHT, FEWEST = 0.5, 8
-"""Joints that the teacher is surer of are taught; a frame with fewer of them is not."""
+"""Confidence of the teacher above which a joint is used, and the fewest such joints of a frame."""
 HELD_SHARE: Final = 0.2
-"""Of a video, its end: nothing is learnt from it, it tells whether the network became better."""
+"""Share of a video at its end that is held out: it shows whether the network improves."""
 ASIDE: Final = 0.04
 """Standard deviation of the person's middle from the window's, in sides."""
 ELSEWHERE: Final = -1000.0
-"""Where a joint is that is not taught: in no window."""
+"""Place of an unused joint: outside any window."""
 
 
 class Looked(NamedTuple):
-    """What a video gives."""
+    """Examples from one video."""
 
     learnt: Path
-    """A folder of examples, as `PictureStore` reads them."""
+    """A folder of examples for `PictureStore`."""
     held: Path
-    """Another, of its last fifth."""
+    """Another one, of its last fifth."""
 
 
 def looked_through(film: Path, teacher: str, folder: Path, tell: Tell) -> Looked:
-    """Look through a video with its teacher, where that is not done yet.
+    """Extract the examples of a video with its teacher, unless that was done before.
 
     Args:
-        film: Of one camera that stands still.
-        teacher: As a run's settings name a source of landmarks outside: `mediapipe`, or a folder.
-        folder: Keeps what is found.
-        tell: Is told the share that is done.
+        film: A video of a static camera.
+        teacher: An outside source of landmarks as in the settings: `mediapipe`, or a folder.
+        folder: Stores the examples.
+        tell: Receives the progress.
 
     Raises:
         TrainingError: When the teacher sees no person.
         SettingsError: When the teacher cannot be used.
-        ClipError, Undecodable, DecoderDied: When the video cannot.
+        ClipError, Undecodable, DecoderDied: When the video cannot be used.
     """
     looked = Looked(folder / "learnt", folder / "held")
     if not (is_drawn(looked.learnt) and is_drawn(looked.held)):
@@ -98,14 +98,14 @@ def _examples(film: Path, teacher: str, tell: Tell) -> Iterator[PictureExample]:
 def example_of(
     picture: Image, mask: Mask, shown: Landmarks, rng: np.random.Generator
 ) -> Sequence[PictureExample]:
-    """The example of a frame: all of its window counts as the person, as that is what lies there;
-    none where the teacher is sure of too little.
+    """The example of a frame. The whole window counts as the person, for want of a better mask.
+    None where the teacher is sure of too little.
 
     Args:
         picture: (H, W, 3)
-        mask: (H, W) the silhouette; where that is empty, one is drawn about the joints.
-        shown: What the teacher sees.
-        rng: Source of how the person is framed.
+        mask: (H, W) the silhouette; an empty one is replaced by one drawn around the joints.
+        shown: The teacher's landmarks.
+        rng: Source of the random framing.
     """
     sure = np.array(shown.confidence) > TAUGHT
     tall_px = stature_px(shown)
@@ -131,7 +131,7 @@ def example_of(
 
 
 def _framed(joints_px: NDArray[np.float64], rng: np.random.Generator) -> Window:
-    """A window about joints, as those of synthetic people lie about them."""
+    """A window around joints, framed as for synthetic people."""
     low, high = joints_px.min(axis=0), joints_px.max(axis=0)
     side = max(8.0, float((high - low).max()) * FRAMED * math.exp(rng.uniform(*FRAME)))
     middle = (low + high) / 2 + ASIDE * side * rng.normal(0.0, 1.0, 2)

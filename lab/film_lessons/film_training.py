@@ -1,4 +1,4 @@
-"""Teaching the shipped network of landmarks on videos, and whether that made it better."""
+"""Fine-tuning of the packaged landmark network on videos, and a test whether it improves."""
 
 import multiprocessing
 from collections.abc import Sequence
@@ -34,50 +34,50 @@ from synth.picture.picture_examples import PictureExample
 from viewer.landmarks.landmark_looks import SHIPPED
 
 FIRST: Final = 30_000_000
-"""Seed of the first of them: the shipped network saw none."""
+"""Seed of the first synthetic person: outside the packaged network's training data."""
 FILM_SHARE: Final = 0.5
-"""Of each batch."""
+"""Number of each kind of example in a batch."""
 RATE, WARM, MEAN_OVER, KEEP_EVERY = 1e-3, 20, 50, 50
-"""As in `landmark_training`: the network is taught already."""
+"""As in `landmark_training`: the network is trained already."""
 FAR: Final = 0.3
-"""A joint that is farther off counts no more than this, statures."""
+"""Upper bound of a joint's error in the mean, statures."""
 FORGETS: Final = 1.03
 """Largest ratio of the error on synthetic people, after to before, with which a network is kept."""
 GROUP: Final = 64
-"""Pictures that are looked at together."""
+"""Number of pictures per inference."""
 FEWEST: Final = 50
-"""Examples to learn from, at least; and a quarter of that held back."""
+"""Fewest training examples; a quarter of that are held out."""
 
 
 class Plan(NamedTuple):
-    """How much is shown."""
+    """Amount of training."""
 
     people: int = 300
-    """Synthetic people, sixteen pictures each, that are shown so that nothing is forgotten."""
+    """Number of synthetic people, sixteen pictures each, that are mixed in against forgetting."""
     anny_people: int = 150
-    """Synthetic people of the Anny model that are shown as well."""
+    """Number of synthetic people of the Anny model that are mixed in."""
     held_back: int = 40
-    """Synthetic people by whom it is told whether anything was forgotten."""
+    """Number of synthetic people that test for forgetting."""
     backdrops: int = 600
     batches: int = 500
     batch: int = 96
 
 
 class Verdict(NamedTuple):
-    """How far joints are off, statures, before and after."""
+    """Mean error of joints, statures, before and after."""
 
     film: tuple[float, float]
-    """Of the videos' ends."""
+    """On the videos' held-out ends."""
     made_up: tuple[float, float]
-    """Of synthetic people."""
+    """On synthetic people."""
 
     @property
     def better(self) -> bool:
-        """Whether it became better on the videos, and forgot hardly anything."""
+        """Whether it improves on the videos, and hardly forgets."""
         return self.film[1] < self.film[0] and self.made_up[1] < FORGETS * self.made_up[0]
 
     def line(self) -> str:
-        """In words."""
+        """The result in words."""
         (film, film_now), (made_up, made_up_now) = self
         return (
             f"joints {100 * film:.1f} -> {100 * film_now:.1f} % of the stature off at the films' "
@@ -86,7 +86,7 @@ class Verdict(NamedTuple):
 
 
 class Wanted(NamedTuple):
-    """A batch that is to be made up; the same wish gives the same batch."""
+    """A request for a batch; equal requests give equal batches."""
 
     films: tuple[Path, ...]
     made_up: tuple[Path, ...]
@@ -97,18 +97,18 @@ class Wanted(NamedTuple):
 def teach_on_films(
     films: Sequence[Path], teacher: str, out: Path, console: Console, plan: Plan = Plan()
 ) -> Facts:
-    """Teach the shipped network on videos and write it, if it became better; what was looked
-    through, drawn and learnt is kept in `<out>.work`: the next call goes on from there.
+    """Fine-tune the packaged network on videos and write it if it improves. Examples and progress
+    are kept in `<out>.work`, from which the next call resumes.
 
     Args:
-        films: Of cameras that stand still; the last fifth of each tells how good it is.
+        films: Videos of static cameras; the last fifth of each tests the result.
         teacher: See `looked_through`.
         out: The file to write, ONNX.
-        console: For progress.
-        plan: How much is shown.
+        console: Shows progress.
+        plan: Amount of training.
 
     Raises:
-        TrainingError: When too little of any person is seen, or it became no better.
+        TrainingError: When too little of any person is seen, or the network does not improve.
     """
     folder = work_of(out)
     looked = _looked(films, teacher, folder, console)
@@ -143,7 +143,7 @@ def _looked(films: Sequence[Path], teacher: str, folder: Path, console: Console)
 
 
 def _drawn(folder: Path, plan: Plan, console: Console) -> list[Path]:
-    """Synthetic people: our own, those of Anny, and last those who are held back."""
+    """Synthetic people: our own, those of Anny, and last those that are held out."""
     parts = [
         Part(folder / "own", FIRST, plan.people),
         Part(folder / "anny", FIRST, plan.anny_people, anny=True),
@@ -156,7 +156,7 @@ def _drawn(folder: Path, plan: Plan, console: Console) -> list[Path]:
 
 
 def composed(wanted: Wanted) -> list[Composite]:
-    """One batch: of videos and of synthetic people, all lit, turned and spoilt in ever new ways."""
+    """One batch of videos and synthetic people, with random light, rotation and corruption."""
     cv2.setNumThreads(1)
     films, made_up = _opened(wanted.films), _opened(wanted.made_up)
     backdrops, rng = _backdrops(wanted.plan), np.random.default_rng([wanted.at, 83])
@@ -182,14 +182,14 @@ def _backdrops(plan: Plan) -> Backdrops:
 
 
 def _shipped() -> LandmarkNetwork:
-    """The shipped network; its normalisations are folded, and stay as they are."""
+    """The packaged network; its normalisations are folded and stay constant."""
     network = LandmarkNetwork().to(memory_format=torch.channels_last)
     fill(network, weights_of(SHIPPED))
     return network.eval()
 
 
 def _learnt(wanted: Wanted, kept: Path, console: Console) -> Work:
-    """The network after all batches; what was kept before is not done again."""
+    """The network after all batches; those done before are not repeated."""
     network, batches = _shipped(), wanted.plan.batches
     work = resumed(begun(network, network.paces()), kept)
     wishes = (wanted._replace(at=at) for at in range(work.batch, batches))
@@ -205,7 +205,8 @@ def _learnt(wanted: Wanted, kept: Path, console: Console) -> Work:
 
 
 def _off(network: nn.Module, held: Wanted) -> tuple[float, float]:
-    """How far joints are off, of the videos' ends as they are, and of synthetic people."""
+    """Error of joints, on the videos' held-out ends without augmentation, and on synthetic
+    people."""
     films = _opened(held.films)
     plain = [_plain(films[at]) for at in range(len(films))]
     rng, made_up, backdrops = (
@@ -221,7 +222,7 @@ def _off(network: nn.Module, held: Wanted) -> tuple[float, float]:
 
 
 def _plain(example: PictureExample) -> Composite:
-    """An example of a video as it was recorded."""
+    """An example of a video without augmentation."""
     joints = example.joints_px
     inside = np.all((joints > 0) & (joints < len(example.body)), axis=1)
     outline = example.outline * np.uint8(255)

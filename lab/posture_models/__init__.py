@@ -1,1 +1,1 @@
-"""How models of postures are trained."""
+"""Training of posture models."""

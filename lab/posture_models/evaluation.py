@@ -1,4 +1,4 @@
-"""How well postures of unseen people are named: table 2 of the paper, with intervals."""
+"""Recognition of unseen people's postures: table 2 of the paper, with intervals."""
 
 import math
 from collections.abc import Collection, Iterator, Sequence
@@ -30,29 +30,30 @@ class Recording(NamedTuple):
     posture: str
     rows: Rows
     clip: str = ""
-    """Where it comes from."""
+    """Its clip or run."""
 
 
 class Outcome(NamedTuple):
-    """What a recording was taken for."""
+    """The result for a recording."""
 
     truth: str
     named: str
     performer: str = ""
     clip: str = ""
     margin: float = math.nan
-    """By how much a frame's log-likelihood of the truth is above that of the best other posture,
-    on average; negative where it was mistaken, NaN where the truth has no model."""
+    """Mean log-likelihood per frame of the truth minus that of the best other posture; negative
+    for a mistake, NaN where the truth has no model."""
     fit: float = math.nan
-    """Log-likelihood of a frame of what was named, on average."""
+    """Mean log-likelihood per frame of the recognised posture."""
     fit_of_others: float = math.nan
-    """Fit of the best posture but the truth: what would be named had it not been learnt."""
+    """That of the best posture other than the truth: the result if the truth had not been
+    trained."""
     known: bool = True
     """The truth has a model."""
 
 
 Fold = tuple[list[Recording], list[Recording]]
-"""Whom to learn from, and whom to name."""
+"""Performers for training, and for testing."""
 
 
 def recognise(
@@ -63,10 +64,10 @@ def recognise(
     seed: int = 0,
     sizes: Sizes = Sizes(),
 ) -> list[Outcome]:
-    """Train on some people and name what others do.
+    """Train on some people and recognise others.
 
     Raises:
-        LearningError: When a performer is in both sets: that would measure memory.
+        LearningError: When a performer is in both sets.
     """
     performers = sorted({recording.performer for recording in learnt_from})
     sequences: dict[str, list[Rows]] = {}
@@ -78,10 +79,10 @@ def recognise(
 
 
 def refuse_who_was_learnt_from(performers: Sequence[str], tested_on: Sequence[Recording]) -> None:
-    """People seen in training are not tested.
+    """Refuse to test on people in the training data.
 
     Raises:
-        LearningError: When one is.
+        LearningError: When one is in both.
     """
     both = sorted({recording.performer for recording in tested_on} & set(performers))
     if both:
@@ -89,7 +90,7 @@ def refuse_who_was_learnt_from(performers: Sequence[str], tested_on: Sequence[Re
 
 
 def named_by(model: PostureModel, tested_on: Sequence[Recording]) -> list[Outcome]:
-    """What a model takes each recording for (P58)."""
+    """A model's result for each recording (P58)."""
     return [_outcome(model, one) for one in tested_on]
 
 
@@ -106,7 +107,7 @@ def _outcome(model: PostureModel, one: Recording) -> Outcome:
 
 
 def folds(recordings: Sequence[Recording]) -> Iterator[Fold]:
-    """Each performer to be named by a model of all others."""
+    """Leave-one-out: each performer tested with a model of all others."""
     for performer in sorted({recording.performer for recording in recordings}):
         yield (
             [one for one in recordings if one.performer != performer],
@@ -115,9 +116,9 @@ def folds(recordings: Sequence[Recording]) -> Iterator[Fold]:
 
 
 def confusion(outcomes: Collection[Outcome], names: Sequence[str]) -> NDArray[np.int64]:
-    """How often each posture (row) was taken for each (column), shape (p, p + 1).
+    """Count of each posture (row) recognised as each (column), shape (p, p + 1).
 
-    The last column counts those that got no name, or one that is not asked for.
+    The last column counts recordings without a name, or with one that is not evaluated.
     """
     counts = np.zeros((len(names), len(names) + 1), np.int64)
     column = {posture: i for i, posture in enumerate(names)}
@@ -127,7 +128,7 @@ def confusion(outcomes: Collection[Outcome], names: Sequence[str]) -> NDArray[np
 
 
 def wilson(correct: int, tested: int) -> tuple[float, float]:
-    """Wilson's 95 % interval of a share; (0, 1) where nothing was tested."""
+    """Wilson's 95 % interval of a share; (0, 1) without tests."""
     if tested == 0:
         return 0.0, 1.0
     share, z2 = correct / tested, Z_95**2
@@ -137,10 +138,10 @@ def wilson(correct: int, tested: int) -> tuple[float, float]:
 
 
 def table(counts: NDArray[np.int64], names: Sequence[str]) -> str:
-    """Table 2 as text: correct of tested for each posture, what it was mistaken for, the total.
+    """Table 2 as text: correct of tested for each posture, its confusions, the total.
 
     Args:
-        counts: (p, p + 1), what `confusion` gives.
+        counts: (p, p + 1), from `confusion`.
 
     Source: Huang & Chung 2004, table 2 (P59).
     """

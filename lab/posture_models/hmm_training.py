@@ -1,4 +1,4 @@
-"""Baum-Welch for one posture of either recogniser, and what keeps few data from narrowing it."""
+"""Baum-Welch for one posture of either recogniser, with regularisation for few data."""
 
 import logging
 from collections.abc import Iterator, Sequence, Sized
@@ -12,36 +12,40 @@ from recognizer.codebook import Codebook, LearningError, Symbols
 from recognizer.postures import STATES, Array, Topology
 
 NEIGHBOUR_WIDTH: Final = 0.25
-"""Distance between codewords at which a symbol still vouches for another: an arm turned by 14
-degrees, a thigh by 5. What a handful of people showed must cover what the next one will show. Of
-420 held-out synthetic performances, 0.15, 0.2 and 0.25 named 371, 372 and 374."""
+"""Distance between codewords at which probability is still shared: an arm turned by 14 degrees,
+a thigh by 5. The training data come from few people and must cover others. Of 420 held-out
+synthetic performances, 0.15, 0.2 and 0.25 recognised 371, 372 and 374."""
 
 EMISSION_FLOOR: Final = 1e-4
-"""No symbol is impossible: one that training never saw must not refuse a posture (P57)."""
+"""Lower bound of a symbol's probability: one that training never saw must not exclude a posture
+(P57)."""
 
 TRANSITION_FLOOR: Final = 1e-3
-"""No allowed transition is impossible, and a state that training never left keeps a way on."""
+"""Lower bound of an allowed transition's probability; so a state that training never left can be
+left."""
 
 ROUNDS: Final = 30
-"""Most rounds of Baum-Welch: on the clips of two performers it converged in 12 to 30."""
+"""Largest number of Baum-Welch rounds: on the clips of two performers it converged in 12 to 30."""
 
 DENSITY_ROUNDS: Final = 20
-"""Most rounds of Baum-Welch for models of densities."""
+"""Largest number of Baum-Welch rounds for models of densities."""
 
 MEAN_WEIGHT: Final = 1e-3
-"""Frames' worth of the overall mean in each state's: one that training never entered has a mean."""
+"""Weight of the overall mean in each state's, frames: a state that training never entered gets a
+mean."""
 
 VARIANCE_FLOOR: Final = 0.01
-"""Of a direction: 6 degrees, what the tracker errs by; no state shall know a person better. 0.005
-and 0.01 named 415 and 417 of 420 held-out synthetic performances, 0.05 only 411."""
+"""Lower bound of a direction's variance: 6 degrees, the tracker's error; no state shall fit a
+person more closely. 0.005 and 0.01 recognised 415 and 417 of 420 held-out synthetic
+performances, 0.05 only 411."""
 
 
 def allowed(topology: Topology, states: int) -> NDArray[np.bool_]:
-    """Which state may follow which: (from, to).
+    """Allowed transitions: (from, to).
 
-    Postures repeat and windows begin anywhere in them, so any state may follow any: chosen on four
-    synthetic performers outside training (52 of 60 right against 47, tracked in `default` mode; 49
-    against 45 in `paper` mode).
+    Postures repeat and windows begin anywhere in them, so all transitions are allowed: chosen on
+    four synthetic performers outside training (52 of 60 right against 47, tracked in `default`
+    mode; 49 against 45 in `paper` mode).
     """
     if topology == "ergodic":
         return np.ones((states, states), np.bool_)
@@ -49,7 +53,8 @@ def allowed(topology: Topology, states: int) -> NDArray[np.bool_]:
 
 
 def start(topology: Topology, states: int) -> Array:
-    """Where a sequence begins, (states,); not trained, few sequences would only make it narrow."""
+    """Initial probabilities, (states,); not trained, as few sequences would make them too
+    narrow."""
     return np.full(states, 1 / states) if topology == "ergodic" else np.eye(states)[0]
 
 
@@ -58,11 +63,11 @@ def train_densities(
 ) -> tuple[Array, Array, Array]:
     """Transition (states, states), mean and variance (states, 27) of one posture.
 
-    Baum-Welch starts from a cluster of frames for each state or, where states follow each other,
-    from each sequence cut into as many stretches.
+    Baum-Welch starts from a cluster of frames for each state or, with left-right transitions, from
+    each sequence cut into as many stretches.
 
     Raises:
-        LearningError: When there are fewer different vectors than states.
+        LearningError: When there are fewer distinct vectors than states.
     """
     from hmmlearn.hmm import GaussianHMM
 
@@ -91,7 +96,7 @@ def train_densities(
 
 
 def _clusters(shown: Array, seed: int, states: int) -> NDArray[np.int64]:
-    """Which of the clusters each vector belongs to."""
+    """Index of each vector's cluster."""
     from sklearn.cluster import KMeans
     from threadpoolctl import threadpool_limits
 
@@ -101,12 +106,12 @@ def _clusters(shown: Array, seed: int, states: int) -> NDArray[np.int64]:
 
 
 def _stretch(given: Sequence[Sized], states: int) -> NDArray[np.int64]:
-    """Which of equal stretches of its sequence each entry of all sequences stands in."""
+    """For all sequences, the index of each entry's stretch, of equal ones."""
     return np.concatenate([np.arange(len(one)) * states // len(one) for one in given])
 
 
 def nearness(codebook: Codebook) -> Array:
-    """How much of a symbol's probability each other symbol gets; rows sum to 1."""
+    """Share of a symbol's probability that each other symbol gets; rows sum to 1."""
     apart = np.linalg.norm(codebook[:, np.newaxis] - codebook, axis=2)
     near = np.exp(-np.square(apart / NEIGHBOUR_WIDTH) / 2)
     return near / near.sum(axis=1, keepdims=True)
@@ -117,10 +122,10 @@ def train_symbols(
 ) -> tuple[Array, Array]:
     """Transition (states, states) and emission (states, symbols) of one posture.
 
-    Baum-Welch starts from each sequence cut into equal stretches, one a state.
+    Baum-Welch starts from each sequence cut into equal stretches, one per state.
 
     Args:
-        near: What `nearness` gave, (symbols, symbols).
+        near: From `nearness`, (symbols, symbols).
     """
     from hmmlearn.hmm import CategoricalHMM
 
@@ -135,12 +140,12 @@ def train_symbols(
 
 
 def _open(transition: Array, may: NDArray[np.bool_]) -> Array:
-    """Transitions of which every allowed one is possible."""
+    """Transitions with every allowed one possible."""
     return _rows(np.where(may, np.maximum(transition, TRANSITION_FLOOR), 0.0))
 
 
 def _shown_by(given: list[Symbols], states: int, count: int) -> Array:
-    """How often each stretch of the sequences shows each symbol, (states, symbols), rows sum to
+    """Frequency of each symbol in each stretch of the sequences, (states, symbols), rows sum to
     1."""
     counts = np.zeros((states, count))
     np.add.at(counts, (_stretch(given, states), np.concatenate(given)), 1.0)
@@ -148,7 +153,7 @@ def _shown_by(given: list[Symbols], states: int, count: int) -> Array:
 
 
 def _smooth(emission: Array, near: Array) -> Array:
-    """Emissions that neighbours share, none below the floor, rows that sum to 1."""
+    """Emissions smoothed over neighbours, none below the lower bound, rows sum to 1."""
     return _rows(np.maximum(emission @ near, EMISSION_FLOOR))
 
 
@@ -158,7 +163,7 @@ def _rows(weights: Array) -> Array:
 
 @contextmanager
 def _silent(logger: str) -> Iterator[None]:
-    """Without hmmlearn's warning of few data: the floors and neighbours are our answer to it."""
+    """Without hmmlearn's warning of few data, which the regularisation addresses."""
     given = logging.getLogger(logger)
     before, given.disabled = given.disabled, True
     try:

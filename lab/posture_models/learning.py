@@ -1,4 +1,4 @@
-"""Learning the models of both recognisers from sequences of rows."""
+"""Training of both recognisers' models from sequences of rows."""
 
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
@@ -22,12 +22,12 @@ from recognizer.postures import (
 
 
 class Sizes(NamedTuple):
-    """How large models are."""
+    """Sizes of models."""
 
     states: int = STATES
-    """Of each model; a file keeps models of the paper's five only."""
+    """Number of states of each model; a file stores only models with the paper's five."""
     symbols: int = SYMBOLS
-    """Of the codebook; a file keeps the paper's 64 only."""
+    """Number of symbols of the codebook; a file stores only the paper's 64."""
 
 
 def train(
@@ -44,13 +44,13 @@ def train(
     sequences and seed give the same model, bit for bit.
 
     Args:
-        sequences: What was seen of each posture; the model keeps the order of the names.
-        recognizer: Which kind of model.
+        sequences: By posture; the model keeps the order of the names.
+        recognizer: Kind of model.
         topology: Left-right with self loops as usual for motions with a beginning; ergodic for
-            such that may begin anywhere.
-        seed: Of the first guess of clusters.
-        performers: Whose sequences these are, for the card.
-        sizes: Of the models.
+            those that may begin anywhere.
+        seed: Seed of the first clusters.
+        performers: Performers of the sequences, for the model card.
+        sizes: Sizes of the models.
 
     Raises:
         LearningError: When a posture has no usable sequence, or all poses together are too few.
@@ -69,15 +69,15 @@ def train(
 def extended(
     known: PostureModel, sequences: Mapping[str, Sequence[Rows]], performers: Sequence[str] = ()
 ) -> PostureModel:
-    """A model that knows more postures, or some of its own anew; its others stay as they are.
+    """A model with more postures, or with some retrained; its others are unchanged.
 
-    The paper's keeps its codebook: poses unlike all that it was made from share a symbol with
-    others, so it learns them less well than the default one.
+    The paper's model keeps its codebook: poses unlike its training data share a symbol with others,
+    so it learns them less well than the default model.
 
     Args:
-        known: What it is added to; its codebook, topology and seed are used again.
-        sequences: What was seen of each posture: three performances are enough.
-        performers: Whose sequences these are, for the card.
+        known: The model to extend; its codebook, topology and seed are used again.
+        sequences: By posture: three performances are enough.
+        performers: Performers of the sequences, for the model card.
 
     Raises:
         LearningError: When a posture has no usable sequence, or too few different poses.
@@ -126,7 +126,7 @@ def _usable(posture: str, given: Sequence[Rows]) -> list[Rows]:
 def _symbol_model(
     seen: list[list[Rows]], card: Card, states: int, codebook: Codebook
 ) -> SymbolModel:
-    """Of sequences posture by posture, in the order of the card."""
+    """Per sequence, posture by posture, in the order of the card."""
     shown = [[features(one) for one in given] for given in seen]
     near = nearness(codebook)
     models = [
@@ -145,7 +145,7 @@ def _symbol_model(
 
 
 def _density_model(seen: list[list[Rows]], card: Card, states: int) -> DensityModel:
-    """Of sequences posture by posture, in the order of the card."""
+    """Per sequence, posture by posture, in the order of the card."""
     shown = [[bearings(one) for one in given] for given in seen]
     models = [train_densities(given, card.topology, card.seed, states) for given in shown]
     transition, mean, variance = (np.stack(part) for part in zip(*models, strict=True))

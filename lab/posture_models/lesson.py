@@ -1,4 +1,4 @@
-"""A posture from a few takes of it: whether they agree, and what it may be mistaken for."""
+"""A posture from a few takes: whether they agree, and which posture it resembles."""
 
 from collections.abc import Sequence
 from typing import Final, NamedTuple
@@ -9,46 +9,46 @@ from recognizer.features import Rows, with_pose
 from recognizer.postures import STATES, PostureModel, scored
 
 LEAST_TAKES: Final = 3
-"""With fewer nothing can be told of how takes of one posture differ."""
+"""Fewest takes: fewer do not show how takes of one posture differ."""
 
 
 class Take(NamedTuple):
-    """One performance, judged by a model that learnt the others and not this one."""
+    """One take, judged by a model trained on the others and not on this one."""
 
     margin: float
-    """How much likelier a frame is of the taught posture than of the likeliest other, log; below
-    0 the take is mistaken."""
+    """Log-likelihood per frame of the taught posture minus that of the likeliest other; below 0
+    the take is mistaken."""
     rival: str
-    """The likeliest of the others."""
+    """The likeliest of the other postures."""
 
 
 class Lesson(NamedTuple):
-    """What came of teaching."""
+    """The result of teaching."""
 
     model: PostureModel
-    """Knows the taught posture too; the others are as they were."""
+    """Has the taught posture too; the others are unchanged."""
     takes: tuple[Take, ...]
 
     @property
     def mistaken(self) -> tuple[int, ...]:
-        """Takes that a model of the others does not know again."""
+        """Takes that a model of the others does not recognise."""
         return tuple(i for i, take in enumerate(self.takes) if take.margin <= 0.0)
 
 
 def taught(
     known: PostureModel, posture: str, takes: Sequence[Rows], performers: Sequence[str] = ()
 ) -> Lesson:
-    """A model that knows one posture more, or one of its own by these takes alone.
+    """A model with one more posture, or with one of its own retrained from these takes alone.
 
     Args:
-        known: What it is added to.
-        posture: The name; of one that is known nothing is kept but its place.
+        known: The model to extend.
+        posture: The name; of an existing one only the index is kept.
         takes: (n, 20) of each performance.
-        performers: Whose they are, for the card.
+        performers: Their performers, for the model card.
 
     Raises:
-        LearningError: When there are too few takes, or one shows too little, or most takes are
-            not known again by what the others teach.
+        LearningError: When there are too few takes, or one shows too little, or a model of the
+            others fails to recognise most takes.
     """
     if len(takes) < LEAST_TAKES:
         raise LearningError(

@@ -1,4 +1,4 @@
-"""Streams that hold many performances: made of single ones, and what was found in them."""
+"""Streams of many performances: joined from single ones, and the evaluation of their events."""
 
 from collections.abc import Sequence
 from typing import Final, NamedTuple
@@ -13,11 +13,11 @@ from recognizer.performance_judge import Event
 from recognizer.postures import DensityModel
 
 PAUSE_FRAMES: Final = (15, 60)
-"""How long a person stands between two joined performances."""
+"""Range of the standing time between two joined performances."""
 BRIDGE_FRAMES: Final = 8
-"""Frames from the last pose of a performance to the stance of the next."""
+"""Number of frames from the last pose of a performance to the stance of the next."""
 SWAY_DEG: Final = 1.0
-"""Of a person who stands, with what the tracker errs by from frame to frame."""
+"""Standard deviation of a standing person's angles, which includes the tracker's error."""
 SWAY_LEGS: Final = 0.002
 """Standard deviation of the root's sway in a stance, leg lengths."""
 LEFT: Final = 0.3
@@ -36,7 +36,7 @@ class Act(NamedTuple):
 
 
 class Stream(NamedTuple):
-    """What was tracked in a stream, and what is performed in it."""
+    """A tracked stream, and the performances in it."""
 
     name: str
     rows: Rows
@@ -44,20 +44,20 @@ class Stream(NamedTuple):
 
 
 class Found(NamedTuple):
-    """What became of the performances of a stream."""
+    """Evaluation of a stream's events."""
 
     stream: str
     frames: int
     performances: int
     delays: tuple[int, ...]
-    """Frames from the end of each that was found to its event."""
+    """Frames from the end of each found performance to its event."""
     missed: tuple[Act, ...]
     false: tuple[Event, ...]
-    """Events of nothing, of something else, or told twice."""
+    """Number of events of nothing, of another posture, or repeated."""
 
 
 def spotted(model: DensityModel, rows: Rows) -> list[tuple[Event, int]]:
-    """The events of a stream, each with the frame in which it was first told."""
+    """The events of a stream, each with the frame of its first report."""
     state, told = events.init(model), dict[int, tuple[Event, int]]()
 
     def take(event: Event | None, frame: int) -> None:
@@ -72,7 +72,7 @@ def spotted(model: DensityModel, rows: Rows) -> list[tuple[Event, int]]:
 
 
 def found(model: DensityModel, stream: Stream) -> Found:
-    """Hold the events of a stream against its performances: one event each, the rest is false."""
+    """Match a stream's events with its performances: one event each, the rest is false."""
     delays: dict[Act, int] = {}
     false = []
     for event, told in spotted(model, stream.rows):
@@ -91,12 +91,12 @@ def _overlap(event: Event, act: Act) -> int:
 
 
 def joined(name: str, performances: Sequence[tuple[str, Rows]], seed: int) -> Stream:
-    """Single performances of one person as a stream: in random order, standing between.
+    """Single performances of one person as a stream: in random order, with standing between.
 
     Args:
-        name: Of the stream.
+        name: Name of the stream.
         performances: Posture and rows (n, 20) of each; they begin in standing.
-        seed: Of order, pauses and sway.
+        seed: Seed of order, pauses and sway.
     """
     rng = np.random.default_rng(seed)
     turns = rng.permutation(len(performances)).tolist()
@@ -117,7 +117,7 @@ def joined(name: str, performances: Sequence[tuple[str, Rows]], seed: int) -> St
 def _pause(
     before: NDArray[np.float64], after: NDArray[np.float64], rng: np.random.Generator
 ) -> Rows:
-    """A person comes to stand as they will begin next."""
+    """Transition of a person to the stance in which the next performance begins."""
     length = int(rng.integers(*PAUSE_FRAMES))
     way = np.clip((np.arange(length) + 1) / BRIDGE_FRAMES, 0.0, 1.0)[:, np.newaxis]
     change = after - before

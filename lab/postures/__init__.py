@@ -1,1 +1,1 @@
-"""How well postures are named: the paper's experiment, and streams."""
+"""Evaluation of posture recognition: the paper's experiment, and streams."""

@@ -21,23 +21,24 @@ from runtime.overrides import overridden
 from viewer.captured_frame import CapturedFrame
 
 SHOWN: Final = 8
-"""Frames of a strip: a motion of two or three seconds is told by so many."""
+"""Number of frames: enough for a motion of two or three seconds."""
 WIDTH_PX: Final = 160
-"""Of each frame of the strip."""
+"""Height of each frame, pixels."""
 LEVELS: Final = 0xF0
-"""Bits of a colour that are kept: a page of strips with their noise would weigh 12 MB."""
+"""Bits of a colour that are kept: with their noise a page of strips would have 12 MB."""
 
 Instant = tuple[dict[ViewerNumber, CapturedFrame], dict[int, View], Body]
-"""What went through the tracker at one time."""
+"""Frames, reports and body of one instant."""
 
 
 def contact_strip(path: Path, mode: Mode | None, decoders: Decoders) -> bytes:
-    """A PNG: a row a view, SHOWN frames spread over the motion, silhouettes and limbs drawn in.
+    """A PNG with a row per view, SHOWN frames spread over the motion, silhouettes and limbs drawn
+    in.
 
     Args:
         path: Clip folder or settings file.
-        mode: How it is tracked.
-        decoders: For its videos.
+        mode: Mode for tracking.
+        decoders: Read its videos.
 
     Raises:
         ClipError: When the clip cannot be used.

@@ -1,4 +1,4 @@
-"""How well postures of people never learnt from are named: the paper's experiment (P56-P60)."""
+"""Recognition of postures of people outside the training data: the paper's experiment (P56-P60)."""
 
 import time
 from collections.abc import Mapping, Sequence
@@ -36,22 +36,22 @@ KINDS: Final[dict[str, tuple[Recognizer, ...]]] = {
     "default": ("default",),
     "paper": ("paper",),
 }
-"""Which recognisers stand side by side, by what a command line calls them."""
+"""Recognisers to compare, by their names on a command line."""
 
 
 class Plan(NamedTuple):
     """What is evaluated, and how."""
 
     split: str = EACH_IN_TURN
-    """As `experiment.jobs_of` takes it."""
+    """As in `experiment.jobs_of`."""
     recognizers: tuple[Recognizer, ...] = KINDS["both"]
     mode: Mode | None = None
-    """How clips are tracked; None: in each recogniser's own mode."""
+    """Mode for tracking; None: each recogniser's own mode."""
     model: Path | None = None
-    """Names all clips instead of what would be learnt from some of them; "shipped": those in the
+    """A model to test on all clips, in place of training on some; "shipped": those in the
     package."""
     sweep: bool = False
-    """The paper's recogniser in other sizes too."""
+    """True: the paper's recogniser in other sizes too."""
     cache: Path = Path("runs/.tracked")
     dask: str = ""
     """A cluster's address; "" for the cores of this machine."""
@@ -62,20 +62,20 @@ def evaluate_postures(paths: Sequence[Path], out: Path, plan: Plan, console: Con
 
     Args:
         paths: Clip folders whose `meta.json` names posture and performer, or their run folders.
-        out: Folder of the report; made where it is not there.
+        out: Folder of the report; created where missing.
         plan: What is evaluated.
-        console: For progress and warnings.
+        console: Shows progress and warnings.
 
     Returns:
-        What `report.json` holds.
+        The content of `report.json`.
 
     Raises:
-        TrainingError, LearningError: When nothing can be learnt or tested: before anything is
-            tracked where the clips' own words tell it; or when the report cannot be written.
+        TrainingError, LearningError: When there is nothing to train or test on, which the clips'
+            own data show before tracking; or when the report cannot be written.
         RecordingError: When a folder is neither clip nor run, or names no posture.
         SettingsError, ClipError, ClipsFailed: When clips cannot be used.
-        ModelError: When the plan's model cannot.
-        ClusterError: When the plan's cluster cannot.
+        ModelError: When the plan's model cannot be used.
+        ClusterError: When the plan's cluster cannot be used.
     """
     models = _models(plan)
     given = announced(paths, console)
@@ -101,7 +101,7 @@ def evaluate_postures(paths: Sequence[Path], out: Path, plan: Plan, console: Con
 
 
 def _models(plan: Plan) -> dict[Recognizer, PostureModel | None]:
-    """What names the clips, of each kind; None where it is yet to be learnt."""
+    """The model of each kind; None where it must be trained."""
     if plan.model is None:
         return dict.fromkeys(plan.recognizers)
     given = [model_named(plan.model, kind) for kind in plan.recognizers]
@@ -111,7 +111,7 @@ def _models(plan: Plan) -> dict[Recognizer, PostureModel | None]:
 def _refuse_in_vain(
     given: Sequence[Recording], models: Mapping[Recognizer, PostureModel | None], plan: Plan
 ) -> None:
-    """Say before the work that nothing would be measured."""
+    """Refuse, before the work, a plan that would measure nothing."""
     for model in models.values():
         if model is None:
             refuse_in_vain(given, plan.split)
@@ -128,7 +128,7 @@ def _result(
     plan: Plan,
     console: Console,
 ) -> Facts:
-    """All that is said of one recogniser."""
+    """The report on one recogniser."""
     began = time.perf_counter()
     groups: dict[str, list[Outcome]]
     if model is None:
@@ -144,7 +144,7 @@ def _result(
 
 
 def _swept(given: list[Recording], plan: Plan, console: Console) -> Facts:
-    """Right names of each size: a row for each number of symbols, a column for states."""
+    """Correct results of each size: a row per number of symbols, a column per number of states."""
     groups = judged(list(sweep_of(given, plan.split)), console)
     shares = [
         [share(groups[swept(symbols, states)]) for states in SWEPT_STATES]
@@ -154,7 +154,7 @@ def _swept(given: list[Recording], plan: Plan, console: Console) -> Facts:
 
 
 def _people(given: Sequence[Recording], plan: Plan) -> Facts:
-    """Who was learnt from, who was tested, and how widely each group's styles are spread."""
+    """Training people, tested people, and the range of each group's styles."""
     parts = None if plan.model else parts_of(given, plan.split)
     groups = {"tested": given} if parts is None else {"learnt from": parts[0], "tested": parts[1]}
     return {

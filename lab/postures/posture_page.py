@@ -1,4 +1,4 @@
-"""A posture report as a page that needs nothing but itself."""
+"""A posture report as a self-contained page."""
 
 from base64 import b64encode
 from pathlib import Path
@@ -16,7 +16,7 @@ def page_of(report: Facts, folder: Path) -> str:
 
     Args:
         report: What `report.json` holds.
-        folder: Where the pictures that it names are; they become part of the page.
+        folder: Folder of the pictures that it names; they are embedded.
 
     Raises:
         OSError: When a picture cannot be read.

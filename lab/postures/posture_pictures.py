@@ -1,4 +1,4 @@
-"""Pictures of a posture report: who was taken for what, and the worst clips."""
+"""Pictures of a posture report: the confusions, and the worst clips."""
 
 from pathlib import Path
 from typing import Final
@@ -36,9 +36,9 @@ def draw_confusion(result: Facts, title: str, path: Path) -> None:
 
 
 def draw_worst(result: Facts, mode: Mode | None, folder: Path, prefix: str) -> None:
-    """Write a strip of frames of each of the worst clips, and note its file beside it.
+    """Write a strip of frames of each of the worst clips, and record its file name.
 
-    A run folder holds no pictures: it gets no strip.
+    A run folder holds no pictures, so it gets no strip.
 
     Raises:
         ClipError: When a clip cannot be used any more.

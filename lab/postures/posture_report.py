@@ -1,4 +1,4 @@
-"""What a posture report says of one recogniser: counts, intervals, margins, the worst clips."""
+"""One recogniser's part of a posture report: counts, intervals, margins, the worst clips."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -11,15 +11,15 @@ from lab.posture_models.evaluation import Outcome, confusion, table, wilson
 from recognizer.postures import POSTURES
 
 WORST: Final = 6
-"""Clips that a report shows pictures of, at most."""
+"""Largest number of clips shown as pictures."""
 
 
 def result_of(outcomes: Sequence[Outcome], least_fit: float) -> Facts:
-    """What `report.json` holds of the outcomes of one recogniser.
+    """One recogniser's part of `report.json`.
 
     Args:
-        outcomes: Of everybody who was tested.
-        least_fit: Below it, a frame's log-likelihood means that the posture is not known.
+        outcomes: Results of all tested people.
+        least_fit: Log-likelihood per frame below which a posture counts as unknown.
     """
     known = [one for one in outcomes if one.known]
     names = postures_of(known)
@@ -38,7 +38,7 @@ def result_of(outcomes: Sequence[Outcome], least_fit: float) -> Facts:
 
 
 def postures_of(outcomes: Sequence[Outcome]) -> list[str]:
-    """What was shown: ours in the order of table 2, then a user's own."""
+    """The performed postures: ours in the order of table 2, then a user's own."""
     seen = {one.truth for one in outcomes}
     return [*(name for name in POSTURES if name in seen), *sorted(seen - set(POSTURES))]
 
@@ -55,7 +55,7 @@ def share(outcomes: Sequence[Outcome]) -> Facts:
 
 
 def worst_of(outcomes: Sequence[Outcome]) -> list[Outcome]:
-    """The mistaken, then those nearest to it: the lowest margins first, WORST at most."""
+    """The mistakes, then the closest results: the lowest margins first, WORST at most."""
     told = [one for one in outcomes if not math.isnan(one.margin)]
     return sorted(told, key=lambda one: (one.truth == one.named, one.margin))[:WORST]
 
@@ -68,7 +68,7 @@ def _shares(
 
 
 def _margins(outcomes: Sequence[Outcome]) -> Facts:
-    """Of a frame's log-likelihood: how clear the decisions were."""
+    """Of the log-likelihood per frame: how clear the decisions were."""
     margins = np.array([one.margin for one in outcomes if not math.isnan(one.margin)])
     if not len(margins):
         return {}
@@ -77,8 +77,8 @@ def _margins(outcomes: Sequence[Outcome]) -> Facts:
 
 
 def _rejection(outcomes: Sequence[Outcome], least_fit: float) -> Facts:
-    """How often what was taught gets no name, and how often each posture would get none, had
-    it was not taught."""
+    """How often a trained posture gets no name, and how often each posture would get none
+    without its training."""
     known = [one for one in outcomes if one.known]
     unknown = {}
     for name in postures_of(outcomes):

@@ -1,4 +1,4 @@
-"""Who is learnt from and who is named: models made and asked on all cores."""
+"""Splits into training and test people: models trained and tested on all cores."""
 
 from collections.abc import Iterator, Sequence
 from fnmatch import fnmatchcase
@@ -21,7 +21,7 @@ from runtime.store.cores import made
 from runtime.terminal import bar
 
 EACH_IN_TURN: Final = "leave-one-performer-out"
-"""The split in which everybody is named by a model of all others."""
+"""The split in which each person is tested with a model of all others."""
 
 SWEPT_SYMBOLS: Final = (16, 32, 64, 128, 256)
 SWEPT_STATES: Final = (3, 4, 5, 6, 7, 8)
@@ -29,7 +29,7 @@ SWEPT_STATES: Final = (3, 4, 5, 6, 7, 8)
 
 
 class Job(NamedTuple):
-    """One model to be made and asked."""
+    """One model to train and test."""
 
     group: str
     """Outcomes of the same group are counted together."""
@@ -39,15 +39,15 @@ class Job(NamedTuple):
 
 
 def jobs_of(given: Sequence[Recording], split: str, kind: Recognizer) -> Iterator[Job]:
-    """Those of the headline, and leave-one-performer-out within the test set beside it.
+    """The jobs of the headline, and leave-one-performer-out within the test set.
 
     Args:
-        given: Of everybody.
+        given: Recordings of all people.
         split: EACH_IN_TURN, or performers to learn from and to test on: "anna,ben:cleo", "s1*:s2*".
-        kind: Of model.
+        kind: Kind of model.
 
     Raises:
-        TrainingError: When the split leaves no performer to learn from or to test on.
+        TrainingError: When the split leaves no performer for training or for testing.
     """
     parts = parts_of(given, split)
     if parts is None:
@@ -77,10 +77,10 @@ def swept(symbols: int, states: int) -> str:
 
 
 def parts_of(given: Sequence[Recording], split: str) -> Fold | None:
-    """Whom to learn from and whom to test; None where everybody is tested in turn.
+    """Performers for training and for testing; None where each is tested in turn.
 
     Raises:
-        TrainingError: When that leaves no performer.
+        TrainingError: When no performer is left.
     """
     if split == EACH_IN_TURN:
         if len({one.performer for one in given}) < 2:
@@ -97,14 +97,15 @@ def parts_of(given: Sequence[Recording], split: str) -> Fold | None:
 
 
 def refuse_in_vain(given: Sequence[Recording], split: str) -> None:
-    """Say before the work that a split would measure nothing.
+    """Refuse, before the work, a split that would measure nothing.
 
     Args:
-        given: Of everybody; their rows are not looked at.
-        split: As `jobs_of` takes it.
+        given: Recordings of all people; their rows are not used.
+        split: As for `jobs_of`.
 
     Raises:
-        TrainingError: When it leaves no performer, or none shows what others were learnt from.
+        TrainingError: When it leaves no performer, or none with a posture that others are trained
+        on.
         LearningError: When a performer is in training and in test.
     """
     parts = parts_of(given, split)
@@ -119,7 +120,7 @@ def refuse_in_vain(given: Sequence[Recording], split: str) -> None:
 
 
 def judged(jobs: Sequence[Job], console: Console) -> dict[str, list[Outcome]]:
-    """The outcomes of each group, in an order that does not depend on who was done first."""
+    """The outcomes of each group, in an order independent of the order of completion."""
     found: dict[str, list[Outcome]] = {job.group: [] for job in jobs}
     with bar(console) as progress:
         answers = progress.track(made(_answered, jobs), total=len(jobs), description="learning")

@@ -1,4 +1,4 @@
-"""How many performances are found in uncut streams, how soon, and what is false."""
+"""Evaluation on uncut streams: performances found, delays, false events."""
 
 from collections import defaultdict
 from collections.abc import Sequence
@@ -30,7 +30,7 @@ from runtime.store.pose_arrays import poses
 from runtime.terminal import bar, json_text
 
 SEED: Final = 0
-"""Of the order in which single performances are joined."""
+"""Seed of the order in which single performances are joined."""
 
 
 def evaluate_spotting(
@@ -39,16 +39,16 @@ def evaluate_spotting(
     """Find performances in streams, and write `spotting.json`.
 
     Args:
-        paths: Clips or runs whose `acts` say what is performed when (`tritrack synth --motion
-            stream` makes such), or which show one posture each: these are joined, a stream of each
+        paths: Clips or runs whose `acts` give the performances' times (`tritrack synth --motion
+            stream` makes such), or which show one posture each: these are joined to a stream per
             performer.
-        out: Folder of the report; made where it is not there.
+        out: Folder of the report; created where missing.
         model: A model file; None: the one in the package.
-        mode: How clips are tracked; None: as their settings say.
-        console: For progress and warnings.
+        mode: Mode for tracking; None: that of the settings.
+        console: Shows progress and warnings.
 
     Returns:
-        What the file holds, and the table as text.
+        The file's content, and the table as text.
 
     Raises:
         TrainingError: When a folder is no stream, the model is the paper's, or the report cannot be
@@ -91,7 +91,7 @@ def streams(paths: Sequence[Path], mode: Mode | None, console: Console) -> list[
 
 
 def _refuse_nameless(path: Path) -> None:
-    """Before anything is tracked."""
+    """Raise before anything is tracked."""
     if is_run(path):
         facts = _run(path)[0]
         named = "acts" in facts or facts.get("posture_meant")
@@ -116,7 +116,7 @@ def _run(path: Path) -> tuple[Facts, Arrays]:
 
 
 def _counted(act: Act, often: NDArray[np.int64]) -> Act:
-    """A performance that is told in frames of its clip, in those of the models."""
+    """A performance in frames of its clip, converted to model frames."""
     at = np.cumsum(often) - 1
     first, last = (int(at[min(frame, len(at) - 1)]) for frame in (act.first, act.last))
     return act._replace(first=first, last=last)

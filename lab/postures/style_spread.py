@@ -1,4 +1,4 @@
-"""How differently performers move: the spread of their styles, as synthetic clips note them."""
+"""Variation between performers: the range of their styles, from synthetic clips' metadata."""
 
 import json
 from collections.abc import Sequence
@@ -9,9 +9,10 @@ from lab.posture_models.evaluation import Recording
 
 
 def spread_of(given: Sequence[Recording]) -> dict[str, tuple[float, float]]:
-    """Least and largest of each entry of `style` in the clips' `meta.json`; empty where none says.
+    """Smallest and largest value of each entry of `style` in the clips' `meta.json`; empty without
+    any.
 
-    amp, speed, phase, lean and carry are what the performers of an experiment must differ in.
+    Performers of an experiment must differ in amp, speed, phase, lean and carry.
     """
     styles = [_style(Path(one.clip) / "meta.json") for one in given]
     names = dict.fromkeys(name for style in styles for name in style)

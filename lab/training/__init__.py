@@ -1,1 +1,1 @@
-"""How the shipped models are trained from synthetic people."""
+"""Training of the packaged models on synthetic people."""

@@ -1,4 +1,4 @@
-"""Teaching live: says what to do, counts in, and cuts each take out of what is seen."""
+"""Live teaching: instructions, a countdown, and the cutting of takes from the tracked motion."""
 
 import math
 from collections import deque
@@ -12,16 +12,17 @@ from common.bus.messages import Body
 from recognizer.features import Rows
 
 MOVES_M: Final = 0.12
-"""Who has a joint that comes so far within LOOK_S moves."""
+"""Displacement of a joint within LOOK_S from which on a person moves."""
 LOOK_S: Final = 0.4
 STANDS_S: Final = 0.5
-"""Who has not moved for so long stands."""
+"""Seconds without motion after which a person stands."""
 HELD_S: Final = 2.0
-"""Who stands otherwise than before the take, and for so long, will not go on."""
+"""Seconds of standing in another posture than before the take, after which the take is over."""
 HOME_M: Final = 0.25
-"""Who stands as before has no joint farther from where it was, beside the pelvis."""
+"""Largest distance of a joint, relative to the pelvis, from its place before the take, for the
+same stance."""
 LONGEST_S: Final = 12.0
-"""A take ends by then, and a take that has not begun is not waited for longer."""
+"""Longest take, seconds, and longest wait for one to begin."""
 SHORTEST_S: Final = 0.7
 
 STAND: Final = "stand so that the cameras see all of you, arms hanging"
@@ -31,50 +32,50 @@ AGAIN_LOST: Final = "you were lost from sight: once more"
 
 
 class Look(NamedTuple):
-    """One body, as far as teaching goes."""
+    """One body, reduced for teaching."""
 
     time_s: float
     row: Rows
-    """(20,) as a recogniser is told it."""
+    """(20,) the recogniser's input."""
     joints_m: NDArray[np.float64] | None
-    """(15, 3); None where the body is not followed."""
+    """(15, 3); None where the body is not tracked."""
 
 
 class State(NamedTuple):
-    """What the coach remembers."""
+    """The coach's state."""
 
     posture: str
     count_s: float
-    """How long is counted before each take."""
+    """Length of the countdown before each take, seconds."""
     doing: str = "waiting"
     """waiting (for a person who stands), counting, ready or moving."""
     since_s: float = 0.0
-    """When that began."""
+    """Time when that phase began."""
     still_s: float | None = None
-    """Since when nothing moves; None while something does."""
+    """Time since when nothing moves; None during motion."""
     told: int = 0
-    """The last number that was counted."""
+    """The last number of the countdown."""
     seen: tuple[Look, ...] = ()
-    """What was seen since the take began, and within LOOK_S before."""
+    """Observations since the take began, and within LOOK_S before."""
 
 
 class Said(NamedTuple):
-    """What comes of a look."""
+    """Output after a body."""
 
     word: str = ""
-    """What is said to the person; "" for nothing."""
+    """Text for the person; "" for nothing."""
     take: Rows | None = None
     """(n, 20) a performance from its first movement to the last."""
 
 
 def look_at(body: Body, row: Rows, moving: tuple[str, ...]) -> Look:
-    """A body as the coach sees it; `moving` are the states in which it is followed."""
+    """A body in the coach's form; `moving` are the states in which it is tracked."""
     known = body.status in moving and bool(body.joints_m)
     return Look(body.captured_s, row, np.array(body.joints_m) if known else None)
 
 
 def step(state: State, look: Look) -> tuple[State, Said]:
-    """One more body."""
+    """Process one body."""
     state = _with(state, look)
     if look.joints_m is None:
         return _lost(state, look)
@@ -90,7 +91,7 @@ def step(state: State, look: Look) -> tuple[State, Said]:
 
 
 def _with(state: State, look: Look) -> State:
-    """The state with a look, and since when nothing moves."""
+    """The state with the body, and the time since when nothing moves."""
     kept = deque((*state.seen, look))
     first_s = look.time_s - LOOK_S
     while state.doing != "moving" and kept[0].time_s < first_s:
@@ -107,7 +108,8 @@ def _extent_m(joints_m: list[Vector]) -> float:
 
 
 def _is_home(before: Look, now: Look) -> bool:
-    """Whether a person stands as before the take: arms held up, or a deep squat, are its middle."""
+    """Whether the stance is the one before the take: arms held up, or a deep squat, are the
+    take's middle."""
     assert before.joints_m is not None
     assert now.joints_m is not None
     moved = (now.joints_m - now.joints_m[0]) - (before.joints_m - before.joints_m[0])
@@ -119,7 +121,7 @@ def _to(state: State, doing: str, look: Look) -> State:
 
 
 def _lost(state: State, look: Look) -> tuple[State, Said]:
-    """Who is lost in a take does it again; else one waits."""
+    """A take in which the person is lost must be repeated; otherwise the coach waits."""
     word = AGAIN_LOST if state.doing in ("counting", "ready", "moving") else ""
     return _to(state, "waiting", look)._replace(still_s=None, seen=()), Said(word)
 
@@ -129,7 +131,8 @@ def _begin(state: State, look: Look) -> tuple[State, Said]:
 
 
 def _count(state: State, look: Look) -> tuple[State, Said]:
-    """3, 2, 1, now; whoever moves meanwhile comes to stand again by then, or begins early."""
+    """The countdown 3, 2, 1, now; a person who moves meanwhile either stands again by then, or
+    begins early."""
     left = math.ceil(state.count_s - (look.time_s - state.since_s) - 1e-9)
     if left > 0:
         word = str(left) if left != state.told else ""

@@ -1,4 +1,4 @@
-"""What the network that lifts landmarks is trained on: joints as one or two cameras show them."""
+"""Training examples for the lifting network: joints as one or two cameras show them."""
 
 from collections.abc import Iterator
 from typing import Final, NamedTuple
@@ -32,36 +32,37 @@ from synth.picture.silhouette_examples import (
 
 PICK: Final = [ALL_JOINTS.index(name) for name in JOINT_NAMES]
 AT_LARGE_SHARE, FALL_SHARE = 0.5, 0.15
-"""Of the performances: who moves as they like, who falls."""
+"""Shares of the performances with free motion, and with falls."""
 FALL_BEGINS_S: Final = (3.0, 12.0)
-"""When what is seen of a fall begins."""
+"""Time at which the excerpt of a fall begins."""
 GAP_SHARE, GAP = 0.15, (5, 40)
-"""Of what two cameras see: how much of it one of them loses for so many instants."""
+"""For two cameras: share of performances in which one of them loses the person, and for how many
+instants."""
 BELIEVED, UNMEASURED, UNMEASURED_SHARE = 0.02, 0.05, 0.3
-"""Deviation of a stature from the true one, of who is measured and of who is not."""
+"""Relative deviation of a stature, for a measured and for an unmeasured person."""
 FOCAL_WRONG, PITCH_WRONG_DEG = (0.01, 0.12), (0.3, 3.0)
-"""Deviations of what is known of a camera: where it is calibrated, and where it is guessed."""
+"""Deviations of a camera's parameters: calibrated, and assumed."""
 GUESSED_SHARE: Final = 0.25
-"""Of the lone cameras."""
+"""Share of single cameras that are assumed."""
 NEAREST_M: Final = 0.6
 ASTRAY_M: Final = 1.5
-"""A middle that is farther off teaches nothing."""
+"""Distance of the middle, statures, beyond which an example is dropped."""
 INSTANT_S: Final = 1.0 / FPS
 
 
 class LiftingExample(NamedTuple):
-    """What is learnt from a performance before one camera or two."""
+    """An example from a performance before one camera or two."""
 
     inputs: Floats
     """(n, INPUTS)"""
     due: Floats
-    """(n, 39) what should be said."""
+    """(n, 39) target output."""
     stature_m: float
-    """As it is believed."""
+    """Assumed stature."""
 
 
 def lifting_examples(seed: int) -> list[LiftingExample]:
-    """A performance as one camera shows it and as two do; a seed is a performance."""
+    """A performance seen by one camera and by two; each seed is one performance."""
     rng = np.random.default_rng([seed, 79])
     someone = differing(person(int(rng.integers(*PEOPLE))), rng)
     joints_m = _performed(someone, rng).joints_m[:, PICK]
@@ -73,7 +74,7 @@ def lifting_examples(seed: int) -> list[LiftingExample]:
 
 
 def _performed(someone: Person, rng: np.random.Generator) -> Posed:
-    """A person who moves, and some who fall."""
+    """Motion of a person, sometimes a fall."""
     angles = course(someone, AT_LARGE if rng.random() < AT_LARGE_SHARE else ORDINARY, rng)
     leash = np.tile(rng.uniform(-ROOM_M, ROOM_M, 2), (len(angles), 1))
     if rng.random() >= FALL_SHARE:
@@ -90,7 +91,7 @@ def _seen(
     alone: bool,
     rng: np.random.Generator,
 ) -> LiftingExample:
-    """What the first camera shows alone, or both do; nothing of who comes too near."""
+    """Views of the first camera alone, or of both; none where the person comes too near."""
     cameras = rig.cameras[:1] if alone else rig.cameras
     believed_m = stature_m * (
         1.0 + rng.normal() * (UNMEASURED if rng.random() < UNMEASURED_SHARE else BELIEVED)
@@ -118,7 +119,7 @@ def _is_before(camera: Camera, joints_m: NDArray[np.float64]) -> bool:
 def _instants(
     views: list[ShownJoints], rng: np.random.Generator
 ) -> Iterator[tuple[int, tuple[Shown | None, Shown | None], float]]:
-    """Number, what both views show, and the time since the instant before; some are missing."""
+    """Number, both views, and the time since the instant before; some instants are missing."""
     n = len(views[0].confidence)
     gone = np.zeros((n, 2), np.bool_)
     if len(views) == 1:
@@ -140,7 +141,7 @@ def _instants(
 
 
 def _as_known(camera: Camera, guessed: bool, rng: np.random.Generator) -> Camera:
-    """A camera as a calibration has it, or a guess."""
+    """A camera as its calibration states it, or as assumed."""
     times = float(np.exp(FOCAL_WRONG[guessed] * rng.normal()))
     R = turned("x", np.array([PITCH_WRONG_DEG[guessed] * rng.normal()]))[0] @ np.array(camera.R)
     (focal_px, _, x), (_, _, y), _ = camera.K

@@ -1,4 +1,4 @@
-"""The network that lifts landmarks, trained on motion that is made up and shown by no picture."""
+"""Training of the lifting network on synthetic motion, without rendering pictures."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -17,19 +17,19 @@ from lab.training.network_training import Lesson, train_network
 from lab.training.torch_network import Round, Shown, torch_or_refuse
 
 PERFORMANCES: Final = 30_000
-"""How many are learnt from, each before one camera and before two: some sixty instants each."""
+"""Number of performances, each before one camera and before two: some sixty instants each."""
 UNITS: Final = (320, 320, 320)
 """Units of fc1 and fc2, of the recurrent unit, and of fc3."""
 ROUNDS: Final = (Round(10, 2e-3, 64), Round(6, 1e-3, 64))
 
 
 def train_lifting(out: Path, seed: int, console: Console) -> Facts:
-    """Learn the network afresh and write it: three quarters of an hour on two cores, 4 GB.
+    """Train the network from scratch and write it: three quarters of an hour on two cores, 4 GB.
 
     Args:
         out: The file to write.
-        seed: The first performance's; also of the network's start.
-        console: For progress.
+        seed: Seed of the first performance and of the network's initialisation.
+        console: Shows progress.
 
     Raises:
         TrainingError: When PyTorch is not installed, or the file cannot be written.
@@ -41,13 +41,13 @@ def train_lifting(out: Path, seed: int, console: Console) -> Facts:
 def learnt(
     shown: list[LiftingExample], seed: int, console: Console, rounds: Sequence[Round] = ROUNDS
 ) -> LiftingNetwork:
-    """The network that misses least: mean distance of the joints.
+    """The network with the smallest mean distance of the joints.
 
     Args:
-        shown: Performances.
-        seed: Of the network's start and the order of the performances.
-        console: For progress.
-        rounds: Of training.
+        shown: The performances.
+        seed: Seed of the network's initialisation and the order of the performances.
+        console: Shows progress.
+        rounds: Number of training rounds.
 
     Raises:
         TrainingError: When PyTorch is not installed.
@@ -62,7 +62,7 @@ def learnt(
 
 
 def _tensors(torch: ModuleType, shown: LiftingExample) -> Shown:
-    """Inputs, what is due, ones, and the stature: as tensors of an example's instants."""
+    """Inputs, targets, ones, and the stature: as tensors over an example's instants."""
     ones = np.ones(len(shown.due), np.float32)
     parts = (shown.inputs, shown.due, ones, ones * np.float32(shown.stature_m))
     return tuple(torch.from_numpy(part) for part in parts)

@@ -1,4 +1,4 @@
-"""Teaching a posture before running cameras: takes are counted in, judged, and done again."""
+"""Teaching a posture before running cameras: takes are counted in, judged, and repeated."""
 
 from pathlib import Path
 from typing import Final
@@ -25,11 +25,12 @@ from runtime.live.session import live
 from runtime.store.pose_arrays import poses
 
 MOST_TAKES: Final = 9
-"""Who has not shown the same motion three times by then does not mean one."""
+"""Largest number of takes: a person without three equal ones by then does not mean one posture."""
 
 
 class Teaching:
-    """Hears a run, has it coached, and learns of the takes; True when it has learnt."""
+    """Receives a run's bodies, passes them to the coach, and trains on the takes; True when
+    trained."""
 
     def __init__(self, posture: str, known: PostureModel, console: Console, count_s: float) -> None:
         """Nothing seen yet."""
@@ -43,7 +44,7 @@ class Teaching:
         self._say(f"teaching {posture}: {STAND}")
 
     def __call__(self, heard: Heard) -> bool:
-        """Look at the bodies that are new."""
+        """Process the new bodies."""
         new = heard.bodies.newest(lambda body: body.captured_s > self._last_s)
         for body in new:
             self._last_s = body.captured_s
@@ -71,7 +72,7 @@ class Teaching:
             self._judge()
 
     def _judge(self) -> None:
-        """Learn of three takes that agree; what does not is told and let go."""
+        """Train on three takes that agree; a take that does not is reported and dropped."""
         if len(self._takes) < LEAST_TAKES:
             self._say(f"take {len(self._takes)} of {LEAST_TAKES}; {STAND}")
             return
@@ -90,7 +91,7 @@ class Teaching:
         self._takes = [take for i, take in enumerate(self._takes) if i not in lesson.mistaken]
 
     def _say(self, text: str) -> None:
-        """In words and by the terminal's bell: who stands before cameras reads no screen."""
+        """Report in words and with the terminal's bell: a person before cameras reads no screen."""
         self._console.bell()
         self._console.print(text, highlight=False)
 
@@ -102,17 +103,17 @@ def teach_live(
 
     Args:
         posture: Its name.
-        settings: Of the run: cameras, or a recording that plays as if it were live.
-        out: The model file; the run's folder stands beside it, named after the posture.
-        plan: What it is added to.
-        console: For what is said.
-        count_s: How long is counted before each take.
+        settings: The run's: cameras, or a recording that plays as if live.
+        out: The model file; the run's folder is beside it, named after the posture.
+        plan: The model to extend.
+        console: Shows the instructions.
+        count_s: Length of the countdown before each take.
 
     Raises:
-        TrainingError: When the name cannot be taught, `out` knows postures that would be lost, or
-            the run ends before three takes agree.
+        TrainingError: When the name is invalid, `out` has postures that would be lost, or the run
+            ends before three takes agree.
         ModelError: When a model cannot be read or written.
-        LiveRefused and what else `live` raises: When the run cannot begin, or fails.
+        LiveRefused and the other errors of `live`: When the run cannot begin, or fails.
     """
     known = model_to_teach(posture, plan, out)
     teaching = Teaching(posture, known, console, count_s)

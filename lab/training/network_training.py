@@ -1,4 +1,4 @@
-"""Training a network that proposes joints: examples are drawn, learnt from, and it is written."""
+"""Training of a network that proposes joints: make examples, train, write."""
 
 import multiprocessing
 from collections.abc import Callable, Sequence
@@ -15,30 +15,31 @@ from lab.training.training import TrainingError
 from runtime.terminal import bar
 
 SHORTEST: Final = 8
-"""Fewest instants of a performance that is learnt from; shorter ones are dropped."""
+"""Fewest instants of a training performance; shorter ones are dropped."""
 
 
 class Example(Protocol):
-    """A performance that is learnt from."""
+    """A training performance."""
 
     @property
     def due(self) -> Floats:
-        """(instants, 3 j): what the network should put out."""
+        """(instants, 3 j): target output."""
         ...
 
 
 class Lesson(NamedTuple):
-    """What is drawn, and how a network learns from it."""
+    """The examples of a task, and its training function."""
 
     tasks: Sequence[Any]
     draw: Callable[[Any], Sequence[Example]]
-    """The examples of one task; runs in processes of its own."""
+    """Makes the examples of one seed; runs in separate processes."""
     learnt: Callable[[list[Any], int, Console], PoseNetwork | LiftingNetwork]
-    """The network, from examples, the seed of its start, and a console for progress."""
+    """Trains the network: from examples, a seed for its initialisation, and a console for
+    progress."""
 
 
 def train_network(lesson: Lesson, out: Path, seed: int, console: Console) -> Facts:
-    """Draw the examples of a lesson, learn the network from them and write it.
+    """Make the examples of a task, train the network on them and write it.
 
     Raises:
         TrainingError: When PyTorch is not installed, or the file cannot be written.

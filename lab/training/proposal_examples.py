@@ -1,4 +1,4 @@
-"""What the network that proposes poses is trained on: synthetic silhouettes, and joints."""
+"""Training examples for the proposal network: synthetic silhouettes, and joints."""
 
 from collections.abc import Iterable
 from typing import Final, NamedTuple
@@ -13,35 +13,35 @@ from synth.person.skeleton import JOINTS as ALL_JOINTS
 from synth.picture.silhouette_examples import Manner, SilhouetteExample, silhouette_examples
 
 BELIEVED: Final = (1.008, 0.02, 0.05)
-"""A measured stature over the true one: mean and standard deviation of a body that was measured,
-and the deviation of one that was not."""
+"""A measured stature over the true one: mean and standard deviation for a measured body, and the
+deviation for an unmeasured one."""
 UNMEASURED_SHARE: Final = 0.15
 ASTRAY_M: Final = 1.5
-"""A silhouette that lies farther from the person teaches nothing."""
+"""Distance of a silhouette from the person, beyond which an example is dropped."""
 PICK: Final = [ALL_JOINTS.index(name) for name in JOINTS]
 
 
 class Example(NamedTuple):
-    """What is learnt from a performance."""
+    """An example from a performance."""
 
     cells: NDArray[np.uint8]
-    """(n, 2, CELLS) how much of each is covered, of 255."""
+    """(n, 2, CELLS) covered part of each cell, of 255."""
     beside: Floats
-    """(n, BESIDE)"""
+    """(n, BESIDE) further inputs."""
     due: Floats
-    """(n, 36) what should be said."""
+    """(n, 36) target output."""
     stature_m: float
-    """As it is believed."""
+    """Assumed stature."""
 
 
 def example_of(performance: tuple[int, Manner]) -> Example:
-    """What is learnt from a performance: its seed and its manner."""
+    """The example of a performance, given its seed and its manner."""
     seed, manner = performance
     return example(silhouette_examples(seed, manner), np.random.default_rng([seed, 78]))
 
 
 def example(shown: Iterable[SilhouetteExample], rng: np.random.Generator) -> Example:
-    """What the network sees of a performance, and what it should say."""
+    """The network's inputs from a performance, and its target."""
     cells, beside, due, believed_m = [], [], [], 0.0
     mean, measured, unmeasured = BELIEVED
     wrong = mean + rng.normal() * (unmeasured if rng.random() < UNMEASURED_SHARE else measured)

@@ -1,4 +1,4 @@
-"""The network that proposes poses, trained on silhouettes of synthetic people."""
+"""Training of the proposal network on silhouettes of synthetic people."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -20,25 +20,25 @@ from lab.training.torch_network import Round, Shown, torch_or_refuse
 from synth.picture.silhouette_examples import AT_LARGE, ORDINARY, Manner
 
 PERFORMANCES: Final = {ORDINARY: 12_000, AT_LARGE: 5_000}
-"""How many of which manner are learnt from: some sixty instants each."""
+"""Number of performances of each manner: some sixty instants each."""
 COMPONENTS: Final = 192
-"""Principal components of a window that are kept."""
+"""Number of principal components of a window."""
 SAMPLED: Final = 12
-"""Instants of each performance that the components are computed from, at most."""
+"""Largest number of instants of each performance for computing the components."""
 LIFTED: Final = 0.02
-"""What is added to a component's spread before dividing by it, in those of the first."""
+"""Added to a component's spread before dividing by it, in spreads of the first."""
 UNITS: Final = (512, 512, 384)
 """Units of fc1 and fc2, of the recurrent unit, and of fc3."""
 ROUNDS: Final = (Round(24, 2e-3, 64), Round(20, 1e-3, 64))
 
 
 def train_proposals(out: Path, seed: int, console: Console) -> Facts:
-    """Learn the network afresh and write it: an hour and a half on two cores, 9 GB.
+    """Train the network from scratch and write it: an hour and a half on two cores, 9 GB.
 
     Args:
         out: The file to write.
-        seed: The first performance's; also of the network's start.
-        console: For progress.
+        seed: Seed of the first performance and of the network's initialisation.
+        console: Shows progress.
 
     Raises:
         TrainingError: When PyTorch is not installed, or the file cannot be written.
@@ -56,13 +56,13 @@ def _drawn(task: tuple[int, Manner]) -> tuple[Example, ...]:
 def learnt(
     shown: list[Example], seed: int, console: Console, rounds: Sequence[Round] = ROUNDS
 ) -> PoseNetwork:
-    """The network that misses least: mean distance of the joints.
+    """The network with the smallest mean distance of the joints.
 
     Args:
-        shown: Performances.
-        seed: Of the network's start and the order of the performances.
-        console: For progress.
-        rounds: Of training.
+        shown: The performances.
+        seed: Seed of the network's initialisation and the order of the performances.
+        console: Shows progress.
+        rounds: Number of training rounds.
 
     Raises:
         TrainingError: When PyTorch is not installed.
@@ -95,7 +95,7 @@ def _components(shown: list[Example]) -> tuple[Floats, Floats]:
 
 
 def _tensors(torch: ModuleType, mean: Floats, components: Floats, shown: Example) -> Shown:
-    """Inputs, what is due, ones, and the stature: as tensors of an example's instants."""
+    """Inputs, targets, ones, and the stature: as tensors over an example's instants."""
     windows = shown.cells.astype(np.float32) / np.float32(255)
     seen = (windows - mean) @ components * shown.beside[:, SEES, None]
     seen = np.concatenate([seen.reshape(len(seen), -1), shown.beside], axis=1)

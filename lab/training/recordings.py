@@ -1,4 +1,4 @@
-"""What was performed in clips and runs: the rows that recognisers learn from and are tested on."""
+"""Labelled performances in clips and runs: the rows for training and testing recognisers."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -32,16 +32,16 @@ from runtime.terminal import bar, complain, warn
 from runtime.unfinished.run_identity import tracker_id
 
 BATCH: Final = 8
-"""Clips that share a pair of decoders, whose start takes as long as a clip or two; as many are
-lost at most on each core when the work is stopped."""
+"""Number of clips that share a pair of decoders, whose start takes as long as one or two clips;
+at most that many are lost per core when the work is stopped."""
 
 
 class RecordingError(RuntimeError):
-    """A clip or run of which nothing can be told; the text names the folder and the cure."""
+    """An unusable clip or run; the text names the folder and the cure."""
 
 
 class Due(NamedTuple):
-    """A clip that is still to be tracked."""
+    """A clip that must still be tracked."""
 
     path: Path
     settings: Settings
@@ -49,30 +49,30 @@ class Due(NamedTuple):
 
 
 class Done(NamedTuple):
-    """What a worker made of one."""
+    """A worker's result for one."""
 
     key: str
     content: bytes
-    """What `clip_cache.packed` gave; empty where the clip cannot be used."""
+    """From `clip_cache.packed`; empty where the clip cannot be used."""
     refusal: str
 
 
 def recordings(
     paths: Sequence[Path], mode: Mode | None, cache: Path, console: Console, posture: str = ""
 ) -> list[Recording]:
-    """What was performed in each clip or run: the motion after the opening posture.
+    """The performance in each clip or run: the motion after the opening posture.
 
     Args:
         paths: Clip folders whose `meta.json` names posture and performer, or their run folders.
-        mode: How clips are tracked; None: as their settings say.
-        cache: Folder that keeps what tracking made of clips.
-        console: For progress and warnings.
-        posture: What all of them show, whatever they say.
+        mode: Mode for tracking; None: that of the settings.
+        cache: Folder of cached tracking results.
+        console: Shows progress and warnings.
+        posture: The posture of all, whatever their labels.
 
     Raises:
-        RecordingError: When a folder is neither, or names no posture: before anything is tracked.
+        RecordingError: When a folder is neither, or has no label: before anything is tracked.
         SettingsError, ClipError, ClipsFailed: When clips cannot be used; ClipsFailed at the end,
-            which and why was said before.
+            after each error was reported.
     """
     folders = [Path(one.clip) for one in announced(paths, console, posture)]
     clips = [path for path in folders if not is_run(path)]
@@ -83,15 +83,14 @@ def recordings(
 
 
 def announced(paths: Sequence[Path], console: Console, posture: str = "") -> list[Recording]:
-    """Who performs what in each clip or run, as it says itself: nothing is tracked, there are no
-    rows yet.
+    """Labels of each clip or run: nothing is tracked, there are no rows yet.
 
     Args:
-        paths: As `recordings` takes them; `posture` too.
-        console: For warnings.
+        paths: As for `recordings`; `posture` too.
+        console: Shows warnings.
 
     Raises:
-        RecordingError: When a folder is neither clip nor run, or names no posture.
+        RecordingError: When a folder is neither clip nor run, or has no label.
         SettingsError, ClipError: When a clip cannot be found.
         ClipsFailed: When there is none.
     """
@@ -117,7 +116,7 @@ def _announced(path: Path) -> Recording:
 
 
 def _tell_what_is_odd(kept: dict[Path, CachedRun], console: Console) -> None:
-    """One line, however many the clips."""
+    """One line, for any number of clips."""
     odd = {path: one.facts["warnings"] for path, one in kept.items() if one.facts["warnings"]}
     for path, warnings in list(odd.items())[:1]:
         others = f", and {len(odd) - 1} more clips have warnings" if len(odd) > 1 else ""
@@ -127,10 +126,10 @@ def _tell_what_is_odd(kept: dict[Path, CachedRun], console: Console) -> None:
 def kept_of(
     clips: Sequence[Path], mode: Mode | None, cache: Path, console: Console
 ) -> list[CachedRun]:
-    """What tracking makes of each clip, tracked by all cores where it is not kept yet.
+    """The tracking result of each clip, computed on all cores where it is not cached.
 
     Raises:
-        ClipsFailed: When clips cannot be used; which and why was said before.
+        ClipsFailed: When clips cannot be used; each error was reported before.
         RunError: When the cache cannot be written.
     """
     tracker = tracker_id()
@@ -148,7 +147,7 @@ def kept_of(
 
 
 def _track_all(due: Sequence[Due], cache: Path, console: Console) -> int:
-    """Track and keep; gives how many could not be."""
+    """Track and cache; returns the number of failures."""
     batches = [due[at : at + BATCH] for at in range(0, len(due), BATCH)]
     refused = 0
     with bar(console) as progress:
@@ -174,7 +173,7 @@ def _keep(cache: Path, done: Done) -> None:
 
 
 def _track(batch: Sequence[Due]) -> list[Done]:
-    """What a worker does with its share."""
+    """A worker's job on its share."""
     cv2.setNumThreads(1)
     with Decoders() as decoders:
         return [_tracked(due, decoders) for due in batch]

@@ -1,4 +1,4 @@
-"""The pixel classifier, trained on videos of synthetic people whose masks are known."""
+"""Training of the pixel classifier on videos of synthetic people with known masks."""
 
 import multiprocessing
 import warnings
@@ -28,52 +28,52 @@ from viewer.silhouette import silhouette
 from viewer.silhouette.pixel_classifier import HIDDEN, PixelClassifier, save
 
 EMPTY_FRAMES: Final = 8
-"""Frames at the start of a synthetic clip that show no person."""
+"""Number of frames at the start of a synthetic clip without a person."""
 PERFORMANCES: Final = 70
-"""People in rooms that are learnt from."""
+"""Number of training people in rooms."""
 SIZE: Final = (320, 240)
 SHARES: Final = (1, 2)
-"""What pictures are divided by: one network serves small ones too."""
+"""Reduction factors of pictures: one network serves small ones too."""
 MOMENTS: Final = 14
-"""Frames of each that show a person, one after the other."""
+"""Number of successive frames with a person."""
 EVERY: Final = 3
-"""Of so many of them one is learnt from."""
+"""Stride between training frames."""
 PIXELS: Final = 400
-"""Of such a frame, at most."""
+"""Largest number of pixels from such a frame."""
 FREE_EVERY: Final = 3
 """Every third person moves at random."""
 QUALITY: Final = (75, 96)
-"""Of the JPEG pictures that a video is made of; development clips have 86."""
+"""JPEG qualities of a video's pictures; development clips have 86."""
 ALIKE_SHARE, PIECE_SHARE = 0.6, 0.55
 """Share of the people who wear the room's colours, and of their clothes that do."""
 PEOPLE, ROOMS = 400_000, 300_000
-"""First ones: no set of clips has them."""
+"""First seeds of people and rooms, outside any set of clips."""
 EPOCHS, BATCH, RATE = 10, 512, 3e-3
 NARROW: Final = 1e-3
-"""Least spread that a feature is divided by."""
+"""Lower bound of a feature's spread before dividing by it."""
 
 
 class Examples(NamedTuple):
-    """Pixels: their features (n, FEATURES), and whether they are body (n,)."""
+    """Pixels: their features (n, FEATURES), and labels (n,), True for the body."""
 
     features: Floats
     body: Mask
 
 
 class LabelledFilm(NamedTuple):
-    """What a camera saw."""
+    """One camera's recording."""
 
     frames: list[Image]
     masks: list[Mask]
 
 
 def train_silhouettes(out: Path, seed: int, console: Console) -> Facts:
-    """Learn the network afresh and write it: some minutes.
+    """Train the network from scratch and write it: some minutes.
 
     Args:
         out: The file to write.
-        seed: The first person's and room's; also of the network's start.
-        console: For progress.
+        seed: Seed of the first person, of the first room, and of the network's initialisation.
+        console: Shows progress.
 
     Raises:
         TrainingError: When the file cannot be written.
@@ -95,7 +95,7 @@ def train_silhouettes(out: Path, seed: int, console: Console) -> Facts:
 
 
 def examples_of(seed: int) -> Examples:
-    """What is learnt from one performance, seen by two cameras."""
+    """Training pixels from one performance, seen by two cameras."""
     rng = np.random.default_rng([seed, 79])
     parts = [
         part
@@ -107,7 +107,8 @@ def examples_of(seed: int) -> Examples:
 
 
 def films(seed: int, rng: np.random.Generator) -> list[LabelledFilm]:
-    """A performance as two cameras recorded it: the empty room, then a person amid a movement."""
+    """A performance recorded by two cameras: the empty room, then a person in the middle of a
+    movement."""
     rig, staging = default_rig(*SIZE), np.random.default_rng([seed, 77])
     someone = _dressed(person(PEOPLE + seed), room_of(ROOMS + seed, rig), staging)
     posture = POSTURES[seed % len(POSTURES)] if seed % FREE_EVERY else "free"
@@ -123,7 +124,7 @@ def films(seed: int, rng: np.random.Generator) -> list[LabelledFilm]:
 
 
 def _dressed(someone: Person, room: Room, rng: np.random.Generator) -> Person:
-    """Some people wear about the colour of what is behind them."""
+    """Some people wear about the colour of the background."""
     if rng.random() >= ALIKE_SHARE:
         return someone
     look = someone.look
@@ -133,7 +134,7 @@ def _dressed(someone: Person, room: Room, rng: np.random.Generator) -> Person:
 
 
 def _worn(own: Colour, room: Room, rng: np.random.Generator) -> Colour:
-    """A colour of the room's, about, or the person's own."""
+    """A colour near one of the room's, or the person's own."""
     if rng.random() >= PIECE_SHARE:
         return own
     picture = room.pictures[rng.integers(2)]
@@ -144,7 +145,7 @@ def _worn(own: Colour, room: Room, rng: np.random.Generator) -> Colour:
 
 
 def _cut(moved: Motion, rng: np.random.Generator) -> Motion:
-    """The empty room and MOMENTS of what follows."""
+    """The empty room and the MOMENTS after it."""
     empty = int(np.count_nonzero(moved.phase == EMPTY))
     start = int(rng.integers(empty, len(moved.phase) - MOMENTS - 2))
     rows = np.r_[0:empty, start : start + MOMENTS]
@@ -158,7 +159,7 @@ def _cut(moved: Motion, rng: np.random.Generator) -> Motion:
 
 
 def _small(film: LabelledFilm, share: int) -> LabelledFilm:
-    """The video at a share of its size; a small pixel is body where half of it is."""
+    """The video at a reduced size; a small pixel is body where half of it is."""
     width, height = SIZE[0] // share, SIZE[1] // share
     frames = [cv2.resize(each, (width, height), interpolation=cv2.INTER_AREA) for each in film[0]]
     masks = [
@@ -168,7 +169,7 @@ def _small(film: LabelledFilm, share: int) -> LabelledFilm:
 
 
 def _doubtful_pixels(film: LabelledFilm, rng: np.random.Generator) -> Iterator[Examples]:
-    """What the viewer would look at again in some frames, and what is there."""
+    """Pixels that the viewer would classify again in some frames, with their labels."""
     settings = SilhouetteSettings()
     state = silhouette.init(learn(film.frames[:EMPTY_FRAMES]), settings, DEFAULT)
     for count, (frame, truth) in enumerate(zip(film.frames, film.masks, strict=True)):
@@ -183,7 +184,7 @@ def _doubtful_pixels(film: LabelledFilm, rng: np.random.Generator) -> Iterator[E
 
 
 def fitted(examples: Examples, seed: int) -> PixelClassifier:
-    """The network that tells them apart, by Adam; the features' scales end up in its weights."""
+    """The classifier, trained by Adam; the features' scales are folded into its weights."""
     from sklearn.exceptions import ConvergenceWarning
     from sklearn.neural_network import MLPClassifier
 
@@ -197,7 +198,7 @@ def fitted(examples: Examples, seed: int) -> PixelClassifier:
         random_state=seed,
     )
     with warnings.catch_warnings():
-        # EPOCHS are enough, whether or not more would still change it
+        # EPOCHS are enough, converged or not
         warnings.simplefilter("ignore", ConvergenceWarning)
         model.fit((examples.features - middle) / spread, examples.body)
     fc1 = model.coefs_[0] / spread[:, None]

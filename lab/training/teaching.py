@@ -1,4 +1,4 @@
-"""Teaching a model one posture more, or one of its own anew, by a few takes of it."""
+"""Teaching a model one more posture, or one of its own again, with a few takes."""
 
 import re
 from collections import Counter
@@ -21,18 +21,18 @@ NAME: Final = re.compile(r"[a-z][a-z0-9_]{0,39}")
 
 
 def teach(posture: str, paths: Sequence[Path], out: Path, plan: Plan, console: Console) -> Facts:
-    """Learn a posture from takes, tell how well they agree, and write the model.
+    """Train a posture on takes, report their agreement, and write the model.
 
     Args:
-        posture: Its name; whatever the clips call it.
-        paths: Clip folders or run folders, one a take.
+        posture: Its name; the clips' labels are ignored.
+        paths: Clip folders or run folders, one per take.
         out: The file to write.
-        plan: What it is added to, and how clips are tracked.
-        console: For progress and warnings.
+        plan: The model to extend, and how clips are tracked.
+        console: Shows progress and warnings.
 
     Raises:
-        TrainingError: When the name cannot be taught, there are too few takes, one is named
-            twice, or the file knows postures that would be lost, or is there and no model.
+        TrainingError: When the name is invalid, there are too few takes, one is named twice, the
+            file has postures that would be lost, or it exists and is no model.
         RecordingError, ClipsFailed: When a take cannot be used.
         LearningError: When the takes do not agree.
         ModelError: When the file cannot be written, or the model to add to cannot be read.
@@ -53,11 +53,11 @@ def teach(posture: str, paths: Sequence[Path], out: Path, plan: Plan, console: C
 
 
 def model_to_teach(posture: str, plan: Plan, out: Path) -> PostureModel:
-    """The model that a posture is added to.
+    """The model to extend.
 
     Raises:
-        TrainingError: When the name is none, is known and shall not be learnt anew, or shall be and
-            is not known; or `out` knows postures that would be lost, or is another file.
+        TrainingError: When the name is invalid, exists although it must not, or is missing although
+            it must exist; or when `out` has postures that would be lost, or is another file.
         ModelError: When it cannot be read.
     """
     if not NAME.fullmatch(posture):
@@ -86,7 +86,7 @@ def model_to_teach(posture: str, plan: Plan, out: Path) -> PostureModel:
 
 
 def _known_by(out: Path) -> tuple[str, ...]:
-    """The postures of a model that is there already; no other file gives way to one."""
+    """The postures of an existing model file; another file is not replaced by one."""
     try:
         return load(out).names
     except ModelError as error:
@@ -96,7 +96,7 @@ def _known_by(out: Path) -> tuple[str, ...]:
 
 
 def kept(lesson: Lesson, posture: str, takes: Sequence[str], out: Path, plan: Plan) -> Facts:
-    """Write what was learnt; what the command tells of it.
+    """Write the model; returns the command's output.
 
     Raises:
         ModelError: When the file cannot be written.
@@ -116,13 +116,13 @@ def kept(lesson: Lesson, posture: str, takes: Sequence[str], out: Path, plan: Pl
 
 
 def rivals(lesson: Lesson) -> list[str]:
-    """The postures that the taught one is nearest to, the nearest take first."""
+    """The postures most similar to the taught one, the most similar take first."""
     near = sorted(lesson.takes, key=lambda take: take.margin)
     return list(dict.fromkeys(take.rival for take in near))
 
 
 def line(facts: Facts) -> str:
-    """What was learnt, in words."""
+    """The result in words."""
     mistaken = [take for take in facts["takes"] if take["margin"] <= 0.0]
     told = [
         f"{facts['posture']} learnt {'again ' * facts['again']}from {len(facts['takes'])} takes,"

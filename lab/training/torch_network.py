@@ -1,4 +1,4 @@
-"""The networks that propose joints, as PyTorch trains them: their outputs, loss and rounds."""
+"""The proposing networks in PyTorch: layers, loss and training rounds."""
 
 from collections.abc import Iterator, Sequence
 from types import ModuleType
@@ -18,34 +18,35 @@ if TYPE_CHECKING:
     from torch import Tensor, nn
 
 Parts: TypeAlias = "list[nn.Module]"
-"""fc1, fc2, the recurrent unit, fc3, out: what `parts_of` gives."""
+"""fc1, fc2, the recurrent unit, fc3, out: the result of `parts_of`."""
 Shown: TypeAlias = "tuple[Tensor, ...]"
-"""A performance: its inputs, what is due, ones, its stature; each (instants, ...)."""
+"""A performance: its inputs, targets, ones, its stature; each (instants, ...)."""
 
 CONFIDENCE_SHARE: Final = 0.01
-"""Weight of what the network says of its sureness beside a distance in statures."""
+"""Weight of the confidence's loss, relative to a distance in statures."""
 MIDDLE_SHARE: Final = 0.3
-"""Weight of where the hips' middle is, of a network that says it, beside a joint from there."""
+"""Weight of the hips' middle, for a network that outputs it, relative to a joint's place from
+there."""
 NEAR_M: Final = 0.05
-"""What it is sure of: a joint is no farther off."""
+"""Distance to which confidence refers: a joint is within it."""
 WARM_STEPS: Final = 150
 DECAY: Final = 1e-4
 STEEPEST: Final = 1.0
-"""Size that a slope is cut to."""
+"""Bound of a gradient's norm."""
 
 
 class Round(NamedTuple):
-    """How a round of training goes: the rate rises, and falls to nothing."""
+    """Learning-rate schedule of a round: the rate rises, then falls to zero."""
 
     epochs: int
     rate: float
-    """The highest."""
+    """Highest learning rate."""
     batch: int
-    """Performances that are shown at once."""
+    """Number of performances per batch."""
 
 
 def torch_or_refuse() -> ModuleType:
-    """PyTorch, which only learning needs.
+    """PyTorch, which only training needs.
 
     Raises:
         TrainingError: When it is not installed.
@@ -60,13 +61,13 @@ def torch_or_refuse() -> ModuleType:
 
 
 def parts_of(torch: ModuleType, told: int, units: tuple[int, int, int], mean_due: Floats) -> Parts:
-    """fc1, fc2, the recurrent unit, fc3, out: untrained layers that put out what is usually due.
+    """fc1, fc2, the recurrent unit, fc3, out: untrained layers whose output is the mean target.
 
     Args:
-        torch: PyTorch, which is loaded where it is needed only.
-        told: Inputs.
-        units: Of fc1 and fc2, of the recurrent unit, and of fc3.
-        mean_due: In statures.
+        torch: The PyTorch module, loaded only where needed.
+        told: Number of inputs.
+        units: Units of fc1 and fc2, of the recurrent unit, and of fc3.
+        mean_due: Mean target, statures.
     """
     hidden, memory, joined = units
     out = torch.nn.Linear(joined, len(mean_due) + len(JOINTS))
@@ -90,15 +91,15 @@ def learn(
     seed: int,
     console: Console,
 ) -> None:
-    """Teach a network its examples, by Adam; what each round ends with is averaged.
+    """Train a network on examples by Adam; the results of all rounds are averaged.
 
     Args:
-        torch: PyTorch.
-        parts: Of the network: changed.
-        examples: Performances, as `loss` takes them.
-        rounds: One after the other.
-        seed: Of the order of the performances.
-        console: For progress.
+        torch: The PyTorch module.
+        parts: The network's layers, changed in place.
+        examples: Performances, in the form of `loss`.
+        rounds: Number of epochs of each round, one after the other.
+        seed: Seed of the order of the performances.
+        console: Shows progress.
     """
     rng, ends = np.random.default_rng(seed), []
     weights = [weight for part in parts for weight in part.parameters()]
@@ -119,7 +120,7 @@ def _round(
     how: Round,
     progress: Progress,
 ) -> None:
-    """Show all examples so often, in other orders."""
+    """Train on all examples that many times, in random orders."""
     epochs, rate, batch = how
     weights = [weight for part in parts for weight in part.parameters()]
     adam = torch.optim.AdamW(weights, lr=rate, weight_decay=DECAY)
@@ -138,13 +139,13 @@ def _round(
 
 
 def loss(torch: ModuleType, parts: Parts, examples: list[Shown]) -> "Tensor":
-    """Mean distance of the joints in statures, and how wrong the sureness about it is.
+    """Mean distance of the joints in statures, plus the loss of the confidence.
 
     Args:
-        torch: PyTorch.
-        parts: Of the network.
-        examples: Performances of any length: inputs, what is due (the joints, and the hips' middle
-            where the network says that), ones, and the stature in metres, each a tensor of
+        torch: The PyTorch module.
+        parts: The network's layers.
+        examples: Performances of any length: inputs, targets (the joints, and the hips' middle
+            where the network outputs it), ones, and the stature in metres, each a tensor of
             (instants, ...).
     """
     seen, due, real, stature_m = (
@@ -165,7 +166,7 @@ def loss(torch: ModuleType, parts: Parts, examples: list[Shown]) -> "Tensor":
 
 
 def _outputs(torch: ModuleType, parts: Parts, seen: "Tensor") -> "Tensor":
-    """What the network says of performances, (performances, instants, outputs)."""
+    """The network's output for performances, (performances, instants, outputs)."""
     fc1, fc2, gru, fc3, out = parts
     hidden = torch.relu(fc1(seen))
     hidden = torch.relu(fc2(hidden) + hidden)
@@ -173,8 +174,8 @@ def _outputs(torch: ModuleType, parts: Parts, seen: "Tensor") -> "Tensor":
 
 
 def _hidden_states(torch: ModuleType, unit: "nn.GRU", hidden: "Tensor") -> "Tensor":
-    """What a gated recurrent unit remembers after each instant: in half precision, which the
-    library's own loop has not."""
+    """The state of a gated recurrent unit after each instant, in half precision, which the
+    library's own loop lacks."""
     linear, own = torch.nn.functional.linear, unit.hidden_size
     taken = linear(hidden, unit.weight_ih_l0, unit.bias_ih_l0)
     memory, found = torch.zeros_like(taken[:, 0, :own]), []
@@ -188,7 +189,7 @@ def _hidden_states(torch: ModuleType, unit: "nn.GRU", hidden: "Tensor") -> "Tens
 
 
 def layers_of(parts: Parts) -> Iterator[NDArray[Any]]:
-    """Weights and biases of a network as `integrator.proposal.network_weights` keeps them."""
+    """Weights and biases of a network in the form of `integrator.proposal.network_weights`."""
     fc1, fc2, gru, fc3, out = parts
     for weight, bias in (
         (fc1.weight, fc1.bias),

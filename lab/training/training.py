@@ -1,4 +1,4 @@
-"""Posture models from clips or runs."""
+"""Training of posture models from clips or runs."""
 
 from collections import defaultdict
 from collections.abc import Mapping, Sequence, Sized
@@ -20,41 +20,41 @@ from runtime.store.cores import spread
 from runtime.terminal import warn
 
 SHIPPED_MODELS: Final[dict[Recognizer, Path]] = {"default": SHIPPED, "paper": SHIPPED_PAPER}
-"""What a command line calls `shipped`."""
+"""Name of the packaged model on a command line."""
 
 
 class TrainingError(ValueError):
-    """What cannot be learnt, tested or written; the text names the cure."""
+    """An impossible training, test or output; the text names the cure."""
 
 
 class Plan(NamedTuple):
-    """What a model is to be, and how its clips are tracked."""
+    """What a model shall be, and how its clips are tracked."""
 
     mode: Mode | None
-    """How clips are tracked; None: in the recogniser's own mode."""
+    """Mode for tracking; None: the recogniser's own mode."""
     recognizer: Recognizer
-    """Which kind of model."""
+    """Kind of model."""
     cache: Path
-    """Folder that keeps what tracking made of clips."""
+    """Folder of cached tracking results."""
     add_to: Path = Path("shipped")
-    """Of teaching: the model that a posture is added to, which tells its kind."""
+    """For teaching: the model to extend, which determines the kind."""
     again: bool = False
-    """Of teaching: the posture is one of that model's, learnt anew."""
+    """For teaching: the posture is one of that model's, to be retrained."""
 
 
 def train_postures(paths: Sequence[Path], out: Path, plan: Plan, console: Console) -> Facts:
-    """Learn a model of each posture and write it.
+    """Train a model of each posture and write it.
 
     Args:
         paths: Clip folders whose `meta.json` names posture and performer, or their run folders.
         out: The file to write.
-        plan: What the model is to be.
-        console: For progress and warnings.
+        plan: What the model shall be.
+        console: Shows progress and warnings.
 
     Raises:
-        RecordingError: When a folder is neither, or names no posture.
+        RecordingError: When a folder is neither, or has no label.
         ClipsFailed: When clips cannot be used.
-        LearningError: When nothing can be learnt.
+        LearningError: When there is nothing to train on.
         ModelError: When the file cannot be written.
     """
     learnt: dict[str, list[Rows]] = defaultdict(list)
@@ -76,7 +76,7 @@ def train_postures(paths: Sequence[Path], out: Path, plan: Plan, console: Consol
 
 
 def _warn_of_few(learnt: Mapping[str, Sized], console: Console) -> None:
-    """Say what a model learns too little for to tell postures apart."""
+    """Warn about training data that are too few to distinguish postures."""
     if len(learnt) == 1:
         warn(
             console,
@@ -92,7 +92,7 @@ def _warn_of_few(learnt: Mapping[str, Sized], console: Console) -> None:
 
 
 def model_named(path: Path, recognizer: Recognizer) -> PostureModel:
-    """The model in a file, or the one in the package where the path is `shipped`.
+    """The model in a file, or the packaged one where the path is `shipped`.
 
     Raises:
         ModelError: When it cannot be read.

@@ -1,1 +1,1 @@
-"""People of the Anny body model, with skin and muscles, to teach beside our own."""
+"""People of the Anny body model, with skin and muscles, as additional training data."""

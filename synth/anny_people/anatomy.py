@@ -1,4 +1,4 @@
-"""What all bodies of the Anny model share: its shapes, one surface, its bones."""
+"""The common parts of all Anny bodies: shapes, surface, bones."""
 
 from functools import cache
 from typing import TYPE_CHECKING, Final, NamedTuple
@@ -12,14 +12,14 @@ if TYPE_CHECKING:
     import torch
 
 TOPOLOGY: Final = "notoes"
-"""Anny's surface whose feet have no toes."""
+"""Name of Anny's surface without toes."""
 FINE: Final = (
     (("head", "neck03"), 0.008),
     (("wrist", "metacarpal", "finger"), 0.008),
     (("foot", "toe"), 0.012),
 )
-"""Beginnings of the names of bones where the surface is finer than a picture shows, and the size of
-a cell, in metres, whose vertices become one."""
+"""Prefixes of the bones where the surface is finer than a picture shows, and the size of a cell,
+metres, whose vertices are merged."""
 
 
 class NoAnny(Exception):
@@ -27,27 +27,27 @@ class NoAnny(Exception):
 
 
 class Anatomy(NamedTuple):
-    """A surface on bones, and the model that shapes them."""
+    """A surface on bones, and the model of its shapes."""
 
     model: "torch.nn.Module"
-    """Of the package: a torch module."""
+    """A torch module of the package."""
     kept: NDArray[np.int64]
-    """(v,) which of its vertices are used."""
+    """(v,) indices of the vertices in use."""
     faces: NDArray[np.int64]
     """(f, 3) seen from outside anticlockwise."""
     weights: NDArray[np.float64]
-    """(v, bones) how much a vertex follows each bone; each row sums to 1."""
+    """(v, bones) skinning weights; each row sums to 1."""
     bones: tuple[str, ...]
     parents: tuple[int, ...]
-    """Index of the bone above, which comes earlier; -1 for the first one."""
+    """Index of the parent bone, which comes earlier; -1 for the first one."""
 
 
 @cache
 def anatomy() -> Anatomy:
-    """The model, loaded once a process.
+    """The model, loaded once per process.
 
-    The package computes this surface's shapes when it is first asked for them, in a minute or two,
-    and keeps them in `$ANNY_CACHE_DIR`, or else in the user's cache folder.
+    The package computes this surface's shapes at the first request, in a minute or two, and keeps
+    them in `$ANNY_CACHE_DIR`, or else in the user's cache folder.
 
     Raises:
         NoAnny: Where the package is not installed.
@@ -74,14 +74,14 @@ def upright(places: NDArray[np.float32]) -> NDArray[np.float64]:
 
 
 def _cell_m(bone: str) -> float:
-    """Size of a cell whose vertices become one; 0 where each of them stays."""
+    """Size of a cell whose vertices are merged; 0 where each of them stays."""
     return next((size for names, size in FINE if bone.startswith(names)), 0.0)
 
 
 def _coarser(
     places: NDArray[np.float64], cells_m: Vector, faces: NDArray[np.int64]
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Which vertices stay, the middle one of each cell, and the faces between those."""
+    """The kept vertices, the middle one of each cell, and the faces between those."""
     keys = np.zeros((len(places), 4), np.int64)
     keys[:, 3] = np.arange(len(places))
     merged = cells_m > 0.0

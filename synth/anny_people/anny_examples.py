@@ -1,4 +1,4 @@
-"""Pictures of people of the Anny model whose joints are known, beside those of our own people."""
+"""Pictures of Anny people with known joints, in addition to those of our own people."""
 
 from collections.abc import Iterator
 from typing import Final
@@ -24,16 +24,16 @@ from synth.picture.render import palette
 from synth.picture.silhouette_examples import PEOPLE
 
 EYES: Final = (0.25, 0.7)
-"""Range of how dark eyes are, as a share of the skin."""
+"""Range of the eyes' brightness, over the skin's."""
 LIPS: Final = (0.7, 0.7, 0.95)
-"""Blue, green, red, as shares of the skin's."""
+"""Blue, green, red of the lips, over the skin's."""
 
 
 def anny_examples(seed: int) -> Iterator[PictureExample]:
     """The pictures of one person, in the clothes and the poses of our own people.
 
     Args:
-        seed: Of the person.
+        seed: Seed of the person.
 
     Raises:
         NoAnny: Where the package `anny` is not installed.
@@ -61,7 +61,7 @@ def _surface(
 
 
 def _colours(look: Look, rng: np.random.Generator) -> NDArray[np.float64]:
-    """Of a face that has eyes and lips, not a shadow alone."""
+    """Colours of a face with eyes and lips, in place of a mere shadow."""
     found = palette(look)
     found[MATERIAL["dark"]] = np.array(look.skin) * rng.uniform(*EYES)
     found[MATERIAL["lips"]] = np.array(look.skin) * LIPS

@@ -1,4 +1,4 @@
-"""Clothes on bodies of the Anny model: painted on the skin, and off it as cloth is."""
+"""Clothes on Anny bodies: painted on the skin, and offset from it like cloth."""
 
 from typing import Final, NamedTuple
 
@@ -16,31 +16,31 @@ from synth.person.people import Look
 from synth.person.rings import MATERIAL
 
 SLEEVE_ENDS: Final = {"none": (-0.1, 0.25), "short": (0.4, 0.95), "long": (1.7, 2.0)}
-"""Where sleeves end along an arm."""
+"""Ends of sleeves along an arm."""
 SHORTS_END, LEGS_END = (0.35, 1.2), (1.75, 2.05)
-"""Where trousers end along a leg."""
+"""Ends of trousers along a leg."""
 BOOT_SHARE: Final = 0.1
 SHOE_TOP_M, BOOT_TOP_M = (0.0, 0.07), (0.1, 0.3)
-"""How far shoes and boots reach over the ankles."""
+"""Height of shoes and boots above the ankles."""
 SOLE_M: Final = (0.006, 0.014)
-"""How thick shoes are."""
+"""Thickness of shoes."""
 NECKLINE_M, NECKLINE_DROP = (-0.075, 0.035), (0.2, 1.0)
-"""How far over the base of the neck a shirt ends; how much lower it is for each metre ahead."""
+"""Height of a shirt's edge above the base of the neck, and its fall per metre ahead."""
 COLLAR_HALF_M: Final = 0.12
 CLOTH_M: Final = 0.003
-"""Cloth is nowhere nearer to the skin."""
+"""Smallest distance of cloth from the skin."""
 FLARE_M: Final = (-0.01, 0.035)
-"""How much wider trousers are at the ankle than the leg and their looseness make them."""
+"""Additional width of trousers at the ankle, beyond the leg and their looseness."""
 FOLD_SHARE: Final = 0.3
-"""How much the distance of cloth from the skin changes from place to place."""
+"""Standard deviation of the cloth's distance over the surface."""
 HANGS_M: Final = 0.03
-"""A shirt that reaches farther below the hips hangs before and between the thighs."""
+"""Length of a shirt below the hips from which on it hangs in front of and between the thighs."""
 COAT_M: Final = 0.12
-"""One that reaches farther is a coat."""
+"""Length from which on it is a coat."""
 SKIRT_SHARE, SKIRT_M = 0.05, (0.15, 0.6)
-"""Of those without a coat: how many wear a skirt; how far below the hips it ends."""
+"""Share of people without a coat who wear a skirt; range of its length below the hips."""
 WAIST_M: Final = 0.07
-"""Over the hips: where what hangs begins."""
+"""Height above the hips where hanging cloth begins."""
 
 
 class Dressed(NamedTuple):
@@ -60,8 +60,8 @@ def anny_dressed(figure: Figure, look: Look, rng: np.random.Generator) -> Dresse
     """A body in clothes.
 
     Args:
-        figure: Naked.
-        look: What is worn, how loose, and the cut of the hair.
+        figure: The naked body.
+        look: Clothes, their looseness, and the haircut.
         rng: Source of what a look leaves open.
     """
     known, near = anatomy(), regions(figure)
@@ -110,7 +110,7 @@ def _worn(
 def _off(
     figure: Figure, near: Regions, look: Look, wear: NDArray[np.int64], rng: np.random.Generator
 ) -> Vector:
-    """How far what is worn is off the skin, (v,) metres."""
+    """Distance of the clothes from the skin, (v,) metres."""
     places = figure.vertices_m
     neck, hips = (figure.heads_m[name][1] for name in ("neck01", "upperleg01.L"))
     creased = 1.0 + FOLD_SHARE * folds(places, rng)
@@ -128,7 +128,7 @@ def _off(
 
 
 def _normals(places: NDArray[np.float64], faces: NDArray[np.int64]) -> NDArray[np.float64]:
-    """(v, 3) outwards, of length 1."""
+    """(v, 3) outward normals, unit length."""
     a, b, c = (places[faces[:, k]] for k in range(3))
     across = np.cross(b - a, c - a)
     found = np.zeros_like(places)

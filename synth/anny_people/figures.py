@@ -1,4 +1,4 @@
-"""Naked bodies of the Anny model: youths and adults of all builds."""
+"""Naked Anny bodies: youths and adults of all builds."""
 
 from typing import Final, NamedTuple
 
@@ -10,10 +10,10 @@ from synth.anny_people.anatomy import anatomy, upright
 from synth.person.skeleton import HEAD_FORWARD
 
 YOUTH, ADULT, AGED = (0.48, 0.6), (0.6, 0.8), (0.8, 1.0)
-"""Ranges of Anny's age: two thirds is a young adult, one is old."""
+"""Ranges of Anny's age parameter: two thirds is a young adult, one is old."""
 YOUTH_SHARE, AGED_SHARE = 0.15, 0.2
 BETWEEN_SHARE: Final = 0.1
-"""Of the bodies: how many are anything between man and woman."""
+"""Share of bodies between man and woman."""
 ABOUT: Final = {
     "muscle": (0.5, 0.22),
     "weight": (0.52, 0.24),
@@ -22,29 +22,29 @@ ABOUT: Final = {
     "cupsize": (0.5, 0.2),
     "firmness": (0.5, 0.2),
 }
-"""Middle and standard deviation of Anny's other parameters, each in [0, 1]."""
+"""Mean and standard deviation of Anny's other parameters, each in [0, 1]."""
 ORIGINS: Final = ("african", "asian", "caucasian")
 KNEE_DROP: Final = 0.06
-"""Anny's knees bend this share of the shank above the middle of the joint, which lies at 0.285 of
-the stature. Source: Drillis and Contini 1966."""
+"""Offset of Anny's knee bend above the middle of the joint, as a share of the shank; the joint
+is at 0.285 of the stature. Source: Drillis and Contini 1966."""
 
 
 class Figure(NamedTuple):
-    """A body at rest: arms half raised, elbows somewhat bent, soles at height 0."""
+    """A body at rest: arms half raised, elbows slightly bent, soles at height 0."""
 
     vertices_m: NDArray[np.float64]
     """(v, 3): x to its left, y up, z ahead."""
     heads_m: dict[str, Vector]
-    """Where each bone begins."""
+    """Start of each bone."""
 
     def crown_m(self) -> Vector:
-        """The top of the head, before the neck as in our own people, (3,)."""
+        """The top of the head, as far ahead of the neck as in our own people, (3,)."""
         neck, top = self.heads_m["neck01"], float(self.vertices_m[:, 1].max())
         return np.array([0.0, top, neck[2] + HEAD_FORWARD * (top - neck[1])])
 
 
 def anny_figure(rng: np.random.Generator) -> Figure:
-    """A body of impossible lengths.
+    """A body with impossible lengths.
 
     Args:
         rng: Source of all choices.

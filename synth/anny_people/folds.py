@@ -9,7 +9,7 @@ from common.body.body import Vector
 
 WAVES: Final = 4
 RATE: Final = (18.0, 75.0)
-"""Range of their wave numbers, radians a metre."""
+"""Range of their wave numbers, radians per metre."""
 
 
 def folds(places_m: NDArray[np.float64], rng: np.random.Generator) -> Vector:

@@ -1,4 +1,4 @@
-"""Hair, beard, eyes, brows and lips: what tells the front of a head from its back."""
+"""Hair, beard, eyes, brows and lips: the differences between a head's front and back."""
 
 from typing import Final
 
@@ -12,26 +12,26 @@ from synth.person.people import Hair
 from synth.person.rings import MATERIAL
 
 LOWEST: Final[dict[Hair, float]] = {"short": 0.42, "bob": -0.1, "tail": 0.36}
-"""Height of the hair's lower edge behind, from the base of the neck to the crown."""
+"""Height of the hair's lower edge behind, between the base of the neck and the crown."""
 BROW: Final = (0.8, 0.9)
-"""Range of the height of its edge over the forehead."""
+"""Range of the height of its edge above the forehead."""
 EDGE_AHEAD: Final = (0.0, 0.42, 0.56, 0.74, 1.0)
 """Places from the back of the head to the tip of the nose: behind, before the ear, temple, brow."""
 PUFF_M: Final = (0.004, 0.03)
-"""How far hair stands off."""
+"""Distance of hair from the head."""
 LOCKS: Final = 0.3
-"""How much that changes from place to place."""
+"""Standard deviation of that over the surface."""
 THICK_M: Final = 0.015
-"""How much farther it does about the neck."""
+"""Additional distance around the neck."""
 LONG_M: Final = 0.16
-"""How far the hair of half of those with a bob hangs below the base of the neck, at most."""
+"""Largest length below the base of the neck for half of those with a bob."""
 KNOT: Final = (0.55, 0.95)
-"""Range of the height of the knot of a tail."""
+"""Range of the height of a ponytail's knot."""
 KNOT_M, KNOT_HALF_M = 0.05, 0.035
 BEARD_SHARE: Final = 0.12
 BEARD_M: Final = (0.001, 0.012)
 EYE_M, BROW_UP_M, LIPS_DOWN_M = 0.016, 0.022, 0.072
-"""Radius of the dark about an eye; how far over it a brow lies, how far below it the lips."""
+"""Radius of the dark area around an eye; height of a brow above it, depth of the lips below it."""
 
 
 def grow_hair(
@@ -45,9 +45,9 @@ def grow_hair(
     """Hair and beard, written into the materials and the distances from the skin.
 
     Args:
-        figure: Naked.
-        head: (v,) how much vertices follow neck and head.
-        cut: Of the hair.
+        figure: The naked body.
+        head: (v,) skinning weights of neck and head together.
+        cut: The haircut.
         wear: (v,) materials, changed.
         off_m: (v,) changed.
         rng: Source of length and thickness.

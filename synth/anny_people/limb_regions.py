@@ -1,4 +1,4 @@
-"""Where on the body each vertex lies: along which arm or leg, how much on the head."""
+"""Region of each vertex: its place along an arm or leg, its weight on the head."""
 
 from typing import Final, NamedTuple
 
@@ -10,7 +10,7 @@ from synth.anny_people.anatomy import anatomy
 from synth.anny_people.figures import Figure
 
 NOWHERE: Final = -9.0
-"""Along an arm, of what belongs to none; along a leg too."""
+"""Coordinate along an arm of a vertex on none; along a leg too."""
 ARM: Final = (
     ("clavicle", "shoulder01", "upperarm01", "upperarm02"),
     ("lowerarm01", "lowerarm02"),
@@ -21,26 +21,26 @@ LEG: Final = (
     ("lowerleg01", "lowerleg02"),
     ("foot", "toe"),
 )
-"""Beginnings of the names of the bones of a limb's upper half, its lower half and its end."""
+"""Prefixes of the bones of a limb's upper half, its lower half and its end."""
 HIPS: Final = ("root", "spine05")
 SEAT: Final = -0.5
-"""Along a leg, of what hangs on the hips."""
+"""Coordinate along a leg of vertices at the hips."""
 HEAD: Final = ("neck01", "neck02", "neck03", "head")
 
 
 class Regions(NamedTuple):
-    """Of each vertex, (v,)."""
+    """Regions of all vertices, (v,)."""
 
     arm: Vector
     """0 shoulder, 1 elbow, 2 wrist, more on the hand; NOWHERE elsewhere."""
     leg: Vector
     """0 hip, 1 knee, 2 ankle, 3 foot, SEAT about the hips; NOWHERE elsewhere."""
     head: Vector
-    """How much it follows neck and head."""
+    """Skinning weights of neck and head."""
 
 
 def regions(figure: Figure) -> Regions:
-    """Of the vertices of a body."""
+    """Regions of the vertices of a body."""
     known = anatomy()
     strongest = np.array(known.bones)[known.weights.argmax(axis=1)]
     arm, leg = np.full(len(strongest), NOWHERE), np.full(len(strongest), NOWHERE)
@@ -62,12 +62,12 @@ def regions(figure: Figure) -> Regions:
 
 
 def _of(strongest: NDArray[np.str_], names: tuple[str, ...], side: str) -> NDArray[np.bool_]:
-    """(v,) which hang most on a bone of that side whose name begins so."""
+    """(v,) vertices whose main bone is of that side and has that prefix."""
     begins = [np.char.startswith(strongest, name) for name in names]
     return np.logical_or.reduce(begins) & np.char.endswith(strongest, f".{side}")
 
 
 def _along(places: NDArray[np.float64], start: Vector, end: Vector) -> Vector:
-    """How far along a way each place (v, 3) lies: 0 at its start, 1 at its end."""
+    """Coordinate of each place (v, 3) along a line: 0 at its start, 1 at its end."""
     way = end - start
     return np.asarray((places - start) @ way / (way @ way))

@@ -1,4 +1,4 @@
-"""Turns of which a bone takes a part, turns about one axis, and turns that let a limb hang."""
+"""Partial turns of a bone, turns about one axis, and turns into a hanging pose."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +10,7 @@ Turns = NDArray[np.float64]
 
 
 def between(first: Turns, second: Turns, share: float) -> Turns:
-    """A share of the way from one turn to another, by the straightest way."""
+    """A share of the shortest turn from one rotation to another."""
     return np.asarray(first @ _partly(np.swapaxes(first, 1, 2) @ second, share))
 
 
@@ -21,7 +21,7 @@ def about(axis: Vector, angle_deg: Vector) -> Turns:
 
 
 def hanging(limb: Vector, hinge: Vector) -> NDArray[np.float64]:
-    """The turn (3, 3) that lets a limb (3,) hang down, and its joint's axis (3,) lie along x."""
+    """The turn (3, 3) that makes a limb (3,) hang down, with its joint's axis (3,) along x."""
     up = -limb / np.linalg.norm(limb)
     x = hinge - (hinge @ up) * up
     x /= np.linalg.norm(x)
@@ -29,7 +29,7 @@ def hanging(limb: Vector, hinge: Vector) -> NDArray[np.float64]:
 
 
 def raised_deg(arm: Turns) -> Vector:
-    """How far a limb that hangs where its turn is the identity is raised, (n,)."""
+    """Elevation of a limb that hangs at the identity turn, (n,)."""
     return np.asarray(np.degrees(np.arccos(np.clip(arm[:, 1, 1], -1.0, 1.0))))
 
 

@@ -1,4 +1,4 @@
-"""Poses of our skeleton on bodies of the Anny model: their limbs point where ours do."""
+"""Poses of our skeleton on Anny bodies: limbs point in the same directions."""
 
 from typing import Final, NamedTuple
 
@@ -12,18 +12,18 @@ from synth.anny_people.part_turns import Turns, about, between, hanging, raised_
 from synth.person.skeleton import ANGLES, BONE_INDEX, CLAVICLE_LIFT, bone_frames, turned
 
 SPINE: Final = {"spine05": 0.15, "spine04": 0.5, "spine03": 0.8, "spine02": 1.0, "spine01": 1.0}
-"""How much of the way from pelvis to chest each of them turns."""
+"""Share of the turn from pelvis to chest for each bone of the spine."""
 NECK: Final = {"neck01": 0.3, "neck02": 0.55, "neck03": 0.8, "head": 1.0}
-"""Share of the turn from chest to head that each bone of the neck has made."""
+"""Share of the turn from chest to head at each bone of the neck."""
 TWIST: Final = 0.4
-"""How much of a limb's twist its upper half has."""
+"""Share of a limb's twist in its upper half."""
 TWISTS: Final = np.array([name.endswith("twist") for name in ANGLES])
 FOREARM: Final = {"lowerarm01": 0.15, "lowerarm02": 0.55, "wrist": 1.0}
-"""How much of a hand's turn each of them has."""
+"""Share of a hand's turn in each bone of the forearm."""
 PRONATED_DEG: Final = 30.0
 """Standard deviation of that turn from a palm that faces the body."""
 CURLED_DEG: Final = (3.0, 55.0)
-"""How far each joint of the fingers is bent."""
+"""Bend of each finger joint."""
 BEGINS: Final = {
     "shoulder": "upperarm01",
     "elbow": "lowerarm01",
@@ -32,7 +32,7 @@ BEGINS: Final = {
     "knee": "lowerleg01",
     "ankle": "foot",
 }
-"""The bone that begins in each joint."""
+"""The bone that begins at each joint."""
 
 
 class Retargeted(NamedTuple):
@@ -41,11 +41,11 @@ class Retargeted(NamedTuple):
     turns: NDArray[np.float64]
     """(n, bones, 3, 3) from rest to the world."""
     places_m: NDArray[np.float64]
-    """(n, bones, 3) where the bones begin."""
+    """(n, bones, 3) starts of the bones."""
     joints_m: NDArray[np.float64]
     """(n, 15, 3) JOINT_NAMES order."""
     front: NDArray[np.float64]
-    """(n, 3) whereto the chest points."""
+    """(n, 3) direction of the chest."""
 
 
 def retargeted(
@@ -58,9 +58,9 @@ def retargeted(
 
     Args:
         figure: The body.
-        measures: Of one of our own people; only turns are taken from there, no length.
+        measures: Measures of one of our own people; only turns depend on them, no length.
         angles_deg: (n, 27) in the order of ANGLES.
-        rng: Source of how the hands are held.
+        rng: Source of the hands' poses.
     """
     known = anatomy()
     frames = _frames(measures, angles_deg)
@@ -82,11 +82,11 @@ def hung(
     figure: Figure,
     body: Retargeted,
 ) -> NDArray[np.float64]:
-    """Where vertices are in each pose, (n, v, 3).
+    """Places of vertices in each pose, (n, v, 3).
 
     Args:
         vertices_m: (v, 3) at rest.
-        weights: (v, bones) how much each follows each bone.
+        weights: (v, bones) skinning weights.
         figure: At rest.
         body: Posed.
     """
@@ -110,9 +110,9 @@ def _frames(measures: dict[str, float], angles_deg: NDArray[np.float64]) -> Turn
 def _turns(
     figure: Figure, frames: Turns, half: Turns, rng: np.random.Generator
 ) -> dict[str, Turns]:
-    """From rest to the world, (n, 3, 3), of all bones that do not just follow the one above.
+    """From rest to the world, (n, 3, 3), for all bones that do not just follow their parent.
 
-    `half` are our own bones' turns where the limbs have the twist of their upper halves.
+    `half` are our own bones' turns with the twist of the limbs' upper halves.
     """
     pelvis, chest, head = (frames[:, BONE_INDEX[name]] for name in ("pelvis", "chest", "head"))
     found = {"root": pelvis}
@@ -146,7 +146,8 @@ def _arm(
 
 
 def _fingers(at: dict[str, Vector], hand: Turns, bent_deg: Vector) -> dict[str, Turns]:
-    """All four curl towards the palm, each joint by as much; to the other side on the right."""
+    """All four fingers curl towards the palm, each joint by the same angle; mirrored on the
+    right."""
     along = at["finger3-3"] - at["wrist"]
     axis = np.cross(along, np.cross(at["finger5-1"] - at["finger2-1"], along))
     joints = (1, 2, 3)
@@ -171,7 +172,7 @@ def _leg(figure: Figure, side: str, frames: Turns, half: Turns) -> dict[str, Tur
 
 
 def _side(figure: Figure, side: str) -> dict[str, Vector]:
-    """Where the bones of one side begin, by their names without it."""
+    """Starts of one side's bones, by their names without the side."""
     return {name[:-2]: at for name, at in figure.heads_m.items() if name.endswith(f".{side}")}
 
 

@@ -1,4 +1,4 @@
-"""Cloth that hangs about hips and thighs: skirts, coats, long shirts."""
+"""Cloth that hangs around hips and thighs: skirts, coats, long shirts."""
 
 from typing import Final, NamedTuple
 
@@ -10,15 +10,15 @@ from synth.anny_people.anatomy import anatomy
 
 RINGS, SIDES = 7, 28
 SLAB_M: Final = 0.04
-"""Half the height of what a ring of cloth goes round."""
+"""Half the height of the slice that a ring of cloth surrounds."""
 NARROWER: Final = 0.97
-"""A ring is at least so wide, as a share of the one above: cloth falls."""
+"""Smallest width of a ring, over that of the one above: cloth falls."""
 FOLLOW: Final = 0.85
-"""How much the lower edge of a long one follows the thighs."""
+"""Share of the thighs' motion that the lower edge of a long one follows."""
 FOLLOW_FROM_M, FOLLOW_OVER_M = 0.05, 0.3
-"""Where below the upper edge it begins to, and over which length."""
+"""Depth below the upper edge at which that begins, and the length over which it grows."""
 APART_M: Final = 0.1
-"""Distance from the middle from which a skirt follows one thigh alone, metres."""
+"""Distance from the middle from which on a skirt follows one thigh alone, metres."""
 
 
 class Tube(NamedTuple):
@@ -32,12 +32,12 @@ class Tube(NamedTuple):
 
 
 def tube_about(inside_m: NDArray[np.float64], reach_m: tuple[float, float], room_m: float) -> Tube:
-    """Cloth that is stretched about a body and falls from its widest place.
+    """Cloth that is stretched around a body and falls from its widest place.
 
     Args:
-        inside_m: (n, 3) what it goes round, at rest.
+        inside_m: (n, 3) points that it surrounds, at rest.
         reach_m: Heights of its upper and its lower edge.
-        room_m: How far off it is.
+        room_m: Its distance from them.
     """
     angle = 2 * np.pi * np.arange(SIDES) / SIDES
     ways = np.stack([np.sin(angle), np.cos(angle)], axis=1)
@@ -54,15 +54,14 @@ def tube_about(inside_m: NDArray[np.float64], reach_m: tuple[float, float], room
 
 
 def _radii(widths: Vector, ways: NDArray[np.float64]) -> Vector:
-    """How far a convex silhouette reaches in each way, (n,), that is so wide along each way (n,
-    2)."""
+    """Support function of a convex outline: its extent along each direction (n, 2), (n,)."""
     cosine = ways @ ways.T
     reach = np.where(cosine > 0.1, widths[None] / np.maximum(cosine, 0.1), np.inf)
     return np.asarray(reach.min(axis=1))
 
 
 def _faces() -> NDArray[np.int64]:
-    """Between the rings; the first one is the highest."""
+    """Faces between the rings; the first one is the highest."""
     ring, side = np.divmod(np.arange((RINGS - 1) * SIDES), SIDES)
     a, b = ring * SIDES + side, ring * SIDES + (side + 1) % SIDES
     c, d = a + SIDES, b + SIDES

@@ -1,1 +1,1 @@
-"""How synthetic people move."""
+"""Motion of synthetic people."""

@@ -1,4 +1,4 @@
-"""Falls: a person stands and moves, tips over some way, lies and moves on, and gets up again."""
+"""Falls: a person stands and moves, falls in some direction, lies and moves, and gets up again."""
 
 from typing import Final, NamedTuple
 
@@ -14,31 +14,31 @@ from synth.person.skeleton import ANGLES, JOINTS
 FALL_S: Final = 17.0
 """Length of the motion."""
 FALLS_S: Final = (5.0, 5.8)
-"""When the fall begins, and the body lies."""
+"""When the fall begins, and when the body lies."""
 RISES_S: Final = (13.0, 15.0)
-"""When it begins to get up, and stands."""
+"""When it begins to get up, and when it stands."""
 LYING_DEG: Final = (78.0, 95.0)
-"""How far over the body is then."""
+"""Tilt of the body then."""
 STILLER: Final = 0.3
-"""What is left of free motion in the limbs of who lies, the trunk's turning apart."""
+"""Factor on free motion in the limbs of a lying person, the trunk's turning apart."""
 FLESH_M: Final = 0.09
-"""Height of a lying body's lowest joint over the floor, metres."""
+"""Height of a lying body's lowest joint above the floor, metres."""
 CARRIES: Final = [
     i for i, name in enumerate(JOINTS) if name[2:] not in ("elbow", "wrist", "knuckle")
 ]
-"""Joints that a body lies on; arms give way."""
+"""Joints that a body lies on; arms yield."""
 _TURN: Final = ANGLES.index("root_yaw")
-"""Who lies rolls over by it."""
+"""Angle by which a lying person rolls over."""
 
 
 def lain(
     angles_deg: NDArray[np.float64], stance: NDArray[np.float64], t: Vector
 ) -> NDArray[np.float64]:
-    """Joint angles (n, 27) of free motion, smaller where the body lies.
+    """Joint angles (n, 27) of free motion, reduced where the body lies.
 
     Args:
         angles_deg: (n, 27) of free motion.
-        stance: (n, 27) of who only stands.
+        stance: (n, 27) of a person who only stands.
         t: (n,) seconds since the motion began.
     """
     share = 1.0 - (1.0 - STILLER) * tipped(t)[:, None]
@@ -48,7 +48,7 @@ def lain(
 
 
 def tipped(t: Vector) -> Vector:
-    """How far over the body is, (n,): 0 upright, 1 lying."""
+    """Tilt of the body, (n,): 0 upright, 1 lying."""
     found: Vector = _eased(t, FALLS_S) * (1.0 - _eased(t, RISES_S))
     return found
 
@@ -59,25 +59,25 @@ def _eased(t: Vector, between_s: tuple[float, float]) -> Vector:
 
 
 class Fall(NamedTuple):
-    """How a person falls."""
+    """Parameters of a fall."""
 
     time_s: Vector
     """(n,) seconds of the frames since the motion began."""
     heading: float
-    """About which level axis, radians: any way."""
+    """Horizontal axis of the tilt, radians: any direction."""
     far_deg: float
-    """How far over the body is when it lies."""
+    """Tilt of the lying body."""
 
 
 def fall(time_s: Vector, rng: np.random.Generator) -> Fall:
-    """Any fall."""
+    """A random fall."""
     return Fall(time_s, rng.uniform(0.0, 2.0 * np.pi), rng.uniform(*LYING_DEG))
 
 
 def fallen(body: Posed, how: Fall) -> Posed:
-    """A moving body, tipped over about the place where it stands, on the floor.
+    """A moving body, tilted around the place where it stands, on the floor.
 
-    Who lies goes on where they stood: the middle of the body is where the feet were.
+    A lying body stays in place: its middle is where the feet were.
     """
     over = tipped(how.time_s)
     axis = np.array([np.cos(how.heading), 0.0, np.sin(how.heading)])

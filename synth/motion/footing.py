@@ -1,4 +1,4 @@
-"""Feet on the floor: where the pelvis must be for the standing foot to rest."""
+"""Feet on the floor: the pelvis's place for which the standing foot rests."""
 
 from typing import Final, NamedTuple
 
@@ -17,11 +17,11 @@ from synth.person.skeleton import (
 )
 
 SMOOTH_M: Final = 0.006
-"""Ankles that differ in height by this much share the weight in proportion."""
+"""Height difference below which both ankles share the weight in proportion."""
 
 
 LEASH: Final = 0.1
-"""Share of the way to the leash's end that the pelvis is drawn in a frame."""
+"""Share of the way to the leash's end that the pelvis moves per frame."""
 
 
 class Posed(NamedTuple):
@@ -42,7 +42,7 @@ def posed(
         measures: Of the body.
         angles_deg: (n, 27), in the order of ANGLES.
         start_m: (2,) x and z of the pelvis in the first frame.
-        leash: (n, 2) where the pelvis is drawn to; feet then slide. NaN: nowhere.
+        leash: (n, 2) place that attracts the pelvis; feet then slide. NaN: none.
     """
     angle = {name: angles_deg[:, i] for i, name in enumerate(ANGLES)}
     bones = bone_frames(measures, angle)
@@ -66,7 +66,7 @@ def _sole(measures: dict[str, float], bones: NDArray[np.float64], side: str) -> 
 
 
 def _lowest_hand(measures: dict[str, float], bones: NDArray[np.float64]) -> Vector:
-    """Height of the lower fingertip, so that no hand reaches through the floor, (n,)."""
+    """Height of the lower fingertip, so that no hand passes through the floor, (n,)."""
     tips = [
         bones[:, BONE_INDEX[f"{side}_hand"], 1, 3]
         - measures["hand_m"] * bones[:, BONE_INDEX[f"{side}_hand"], 1, 1]

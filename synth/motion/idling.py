@@ -1,4 +1,4 @@
-"""What people do between postures: standing, small shifts, scratching, steps back, anything."""
+"""Behaviour between postures: standing, small shifts, scratching, steps back, and others."""
 
 from collections.abc import Callable
 from typing import Final
@@ -12,20 +12,19 @@ from synth.person.people import Style
 from synth.person.skeleton import ANGLES
 
 HEADING_SHARE: Final = 0.25
-"""Of the turns of free motion: who does something else between two postures still faces about
-where they did."""
+"""Factor on the turns of free motion: between two postures people keep roughly their heading."""
 
 RETURNS: Final = ("walk_sideways", "walk_toward", "walk_slow_bigswing")
-"""Postures that lead away: who performed one steps back to where they stood."""
+"""Postures after which the person steps back to their place."""
 
 
 def standing(_t: Vector, _style: Style, _still: Track) -> Track:
-    """Nothing but the sway."""
+    """Only the sway."""
     return {}
 
 
 def shifting(t: Vector, _style: Style, still: Track) -> Track:
-    """The weight from one leg to the other, the trunk following, the head about the room."""
+    """The weight shifts from one leg to the other, the trunk follows, the head looks around."""
     wave = np.sin(2 * np.pi * 0.4 * t)
     found = {"root_roll": 3.0 * wave, "torso_yaw": 9.0 * wave, "head_yaw": 35.0 * wave}
     for side, sign in (("l", 1.0), ("r", -1.0)):
@@ -50,7 +49,7 @@ def scratching(side: str) -> Move:
 
 
 def resting(flex_deg: float, abd_deg: float, twist_deg: float, elbow_deg: float) -> Move:
-    """Both arms at rest somewhere else: on the hips, crossed, at a button."""
+    """Both arms at rest in another place: on the hips, crossed, at a button."""
 
     def move(t: Vector, _style: Style, _still: Track) -> Track:
         level = {"sh_flex": flex_deg, "sh_abd": abd_deg, "sh_twist": twist_deg, "elbow": elbow_deg}
@@ -64,7 +63,7 @@ def resting(flex_deg: float, abd_deg: float, twist_deg: float, elbow_deg: float)
 
 
 def stepping_back(posture: str) -> Move:
-    """The steps of a posture backwards in time: to the place where it began."""
+    """The steps of a posture reversed in time: back to the place where it began."""
 
     def move(t: Vector, s: Style, still: Track) -> Track:
         return MOVES[posture](MOTION_S - t, s, still)
@@ -94,4 +93,4 @@ IDLE: Final[dict[str, Callable[[np.random.Generator], Move]]] = {
     "button": lambda _rng: resting(24.0, 12.0, 45.0, 105.0),
     "anything": anything,
 }
-"""What may happen in a pause, besides standing."""
+"""Behaviours in a pause, besides standing."""

@@ -1,4 +1,4 @@
-"""The 15 postures as motions: what the joints do over time, each in a person's own style."""
+"""The 15 postures as motions: joint angles over time, each in a person's own style."""
 
 from typing import Final, Literal, NamedTuple
 
@@ -17,16 +17,16 @@ POSTURES: Final = tuple(MOVES)
 """The 15 names of design.md 3, in its order."""
 
 EMPTY, TPOSE, LOWERING, MOTION = 0, 1, 2, 3
-"""What a frame of a clip shows: `phase` in `truth.npz`."""
+"""Phases of a clip: `phase` in `truth.npz`."""
 
 OPENING_S: Final = (9 / 15, 14 / 15, 6 / 15)
-"""How long the room is empty, the T-pose is held, the arms come down."""
+"""Durations of the empty room, of the T pose, and of lowering the arms."""
 RAMP_S: Final = 0.25
-"""How fast a repeated movement begins and ends."""
+"""Durations in which a repeated movement begins and ends."""
 LASTS_S: Final = {"free": FREE_S, "fall": FALL_S}
-"""Motions that are no posture, and how long they take."""
+"""Motions that are no posture, and their durations."""
 SWAY_HZ: Final = (0.35, 0.6, 1.1)
-"""Frequencies of the sway that cannot be suppressed."""
+"""Frequencies of the involuntary sway."""
 SWAY_SHARE: Final = {
     "foot": 0.0,
     "elbow": 0.7,
@@ -35,7 +35,7 @@ SWAY_SHARE: Final = {
     "hip": 0.25,
     "torso": 0.4,
 }
-"""Size of the sway of a joint in units of `jit`; 0.6 where none is named."""
+"""Amplitude of a joint's sway in units of `jit`; 0.6 where none is given."""
 
 
 class Act(NamedTuple):
@@ -43,12 +43,12 @@ class Act(NamedTuple):
 
     name: str
     first: int
-    """Frames in which the body left its stance and came back to it."""
+    """Frames in which the body left its stance and returned to it."""
     last: int
 
 
 class Motion(NamedTuple):
-    """What a person does in a clip, frame by frame."""
+    """A person's motion in a clip, frame by frame."""
 
     posture: str
     fps: float
@@ -59,12 +59,12 @@ class Motion(NamedTuple):
     angles_deg: NDArray[np.float64]
     """(n, 27), order of ANGLES; NaN while the room is empty."""
     root_m: NDArray[np.float64]
-    """(n, 3) where the pelvis is; NaN while the room is empty."""
+    """(n, 3) places of the pelvis; NaN while the room is empty."""
     phase: NDArray[np.uint8]
     style: Style
-    """Of this take."""
+    """Style of this take."""
     acts: tuple[Act, ...] = ()
-    """What was performed when, where a take holds several performances."""
+    """The performances of a take that holds several."""
 
     @property
     def present(self) -> NDArray[np.bool_]:
@@ -78,15 +78,15 @@ def performance(
     """One take: the empty room, a T-pose, arms down, then the posture.
 
     Args:
-        someone: Who performs.
-        posture: One of POSTURES; "free": turning and moving at random; "fall": the same, but tipped
-            over, lying and getting up again.
-        seed: Of the take.
-        fps: Frames a second.
-        motion_s: For how long the posture is performed, again and again; 0: once, as in a set.
+        someone: The performer.
+        posture: One of POSTURES; "free": turning and moving at random; "fall": the same, with a
+            fall, lying and getting up again.
+        seed: Seed of the take.
+        fps: Frames per second.
+        motion_s: Duration for which the posture is repeated; 0: once, as in a set.
 
     Raises:
-        ValueError: When the posture is not known.
+        ValueError: When the posture is unknown.
     """
     if posture not in (*LASTS_S, *MOVES):
         raise ValueError(
@@ -113,19 +113,19 @@ def performance(
 
 
 class Course(NamedTuple):
-    """What the joints do in a take."""
+    """Joint angles of a take."""
 
     posture: str
     fps: float
     angles_deg: NDArray[np.float64]
-    """(n, 27), of all frames."""
+    """(n, 27), for all frames."""
     phase: NDArray[np.uint8]
-    """(n,) what is shown: EMPTY and so on."""
+    """(n,) phase of each frame: EMPTY and so on."""
     style: Style
     leash: Vector | None
-    """(n, 2) where the pelvis is drawn to; None: nowhere, and the way is centred."""
+    """(n, 2) places that attract the pelvis; None: none, and the way is centred."""
     falls: Fall | None = None
-    """How they fall; None: they stay upright."""
+    """The fall; None: they stay upright."""
 
 
 def staged(someone: Person, course: Course) -> Motion:
@@ -147,7 +147,7 @@ def staged(someone: Person, course: Course) -> Motion:
 
 
 def stance(s: Style, t: Vector) -> Track:
-    """How a person stands who does nothing."""
+    """The stance of an idle person."""
     still = dict.fromkeys(ANGLES, np.zeros_like(t))
     level = {
         "sh_abd": s.carry,
@@ -171,7 +171,8 @@ def stance(s: Style, t: Vector) -> Track:
 def performed(
     move: Move, still: Track, t: Vector, s: Style, lasts_s: float = MOTION_S
 ) -> NDArray[np.float64]:
-    """Angles (n, 27) of a movement that eases in and out of the stance, the left arm later."""
+    """Angles (n, 27) of a movement that eases in and out of the stance, the left arm with its
+    delay."""
     ease = smooth(t / RAMP_S) * smooth((lasts_s - t) / RAMP_S)
     on_time, late = move(t, s, still), move(t - s.delay, s, still)
     columns = []
@@ -197,7 +198,7 @@ def opened(moved: NDArray[np.float64], phase: NDArray[np.uint8], fps: float) -> 
 
 
 def sway(s: Style, t: Vector, rng: np.random.Generator) -> NDArray[np.float64]:
-    """The sway that cannot be suppressed, (n, 27)."""
+    """The involuntary sway, (n, 27)."""
     columns = []
     for name in ANGLES:
         share = next((v for key, v in SWAY_SHARE.items() if key in name), 0.6)
@@ -222,5 +223,5 @@ _FIVE: Final[dict[str, Movement]] = {
 
 
 def movement(posture: str) -> Movement:
-    """Which of the paper's five movements a posture belongs to; "free": to none."""
+    """The paper's movement to which a posture belongs; "free": none."""
     return _FIVE[posture.split("_", maxsplit=1)[0]]

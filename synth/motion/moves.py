@@ -1,4 +1,4 @@
-"""The 15 postures as courses of joint angles (ours: the paper's list is lost, P56)."""
+"""The 15 postures as curves of joint angles (ours: the paper's list is lost, P56)."""
 
 from collections.abc import Callable
 from typing import Final
@@ -12,27 +12,28 @@ Track = dict[str, Vector]
 """Joint angles over time by their names in ANGLES, degrees."""
 
 Move = Callable[[Vector, Style, Track], Track]
-"""Seconds since the motion began (n,), style and stance to the angles that leave the stance."""
+"""Function from seconds since the motion began (n,), style and stance to the angles that differ
+from the stance."""
 
 MOTION_S: Final = 40 / 15
-"""How long a posture is performed."""
+"""Duration of a posture."""
 
 
 def smooth(x: Vector) -> Vector:
-    """From 0 to 1 without a jerk."""
+    """Smooth step from 0 to 1."""
     x = np.clip(x, 0.0, 1.0)
     return x * x * (3.0 - 2.0 * x)
 
 
 def _bump(turns: Vector, centre: float, width: float) -> Vector:
-    """1 at `centre`, falling on both sides; repeats every turn."""
+    """1 at `centre`, falling on both sides; periodic."""
     off = (turns - centre + 0.5) % 1.0 - 0.5
     found: Vector = np.exp(-((off / width) ** 2))
     return found
 
 
 def _held(t: Vector, s: Style) -> Vector:
-    """0, up to 1, a while there, down again: the course of raising and squatting."""
+    """0, rising to 1, held, back to 0: the curve of raising and squatting."""
     t = t * s.speed - 0.25
     up = smooth(np.clip(t / 0.8, 0.0, 1.0) ** s.snap)
     return up * smooth((2.1 - t) / 0.8)
@@ -41,7 +42,7 @@ def _held(t: Vector, s: Style) -> Vector:
 def _stride(
     t: Vector, s: Style, rate_hz: float, reach_deg: float, lift_deg: float, swing_deg: float
 ) -> Track:
-    """A walk: the leg that comes forward bends, the arms swing against the legs."""
+    """A walk: the forward leg bends, the arms swing opposite to the legs."""
     found: Track = {}
     for side, apart in (("l", 0.0), ("r", 0.5)):
         turns = rate_hz * s.speed * t + s.phase + apart
@@ -58,7 +59,7 @@ def _stride(
 
 
 def walk_in_place(t: Vector, s: Style, still: Track) -> Track:
-    """Knees up in turns, the feet come down where they stood."""
+    """Knees raised alternately, the feet land in place."""
     found: Track = {}
     for side, apart in (("l", 0.0), ("r", 0.5)):
         wave = np.sin(2 * np.pi * (0.92 * s.speed * t + s.phase + apart))
@@ -126,7 +127,7 @@ def swing_right_circles(t: Vector, s: Style, _still: Track) -> Track:
     round_deg = 365.0 * s.speed * np.maximum(t - 0.05, 0.0)
     wave = np.sin(np.radians(round_deg))
     end_deg = 365.0 * s.speed * MOTION_S
-    # ends as it began: the last turn is completed, so easing out does not unwind the circles
+    # it ends as it began: the last turn is completed, so easing out does not unwind the circles
     round_deg = round_deg * round(end_deg / 360.0) * 360.0 / end_deg
     return {
         "r_sh_flex": 4.0 + round_deg,

@@ -9,11 +9,11 @@ from common.body.body import Vector
 from synth.person.skeleton import ANGLES
 
 FREE_S: Final = 16.0
-"""Length of the motion: long enough for every joint to reach both ends of its range."""
+"""Duration: long enough for every joint to reach both ends of its range."""
 
 KEYS: Final = 36
-"""Poses that are passed on the way, one every 0.44 s: an arm that crosses its range between two
-of them swings faster than 300 degrees a second."""
+"""Number of poses on the way, one every 0.44 s: an arm that crosses its range between two of
+them moves faster than 300 degrees a second."""
 
 FREE_RANGES_DEG: Final[dict[str, tuple[float, float]]] = {
     "torso_pitch": (-10.0, 35.0),
@@ -33,35 +33,35 @@ FREE_RANGES_DEG: Final[dict[str, tuple[float, float]]] = {
     "root_pitch": (-6.0, 18.0),
     "root_roll": (-6.0, 6.0),
 }
-"""How far each joint goes, by its name in ANGLES without the side."""
+"""Range of each joint, by its name in ANGLES without the side."""
 
 ARM_CROWDING_DEG: Final = 190.0
-"""Abduction and flexion of a shoulder together stay below this: beyond, the arm would pass
-through the head."""
+"""Bound of a shoulder's abduction and flexion together: beyond, the arm would pass through the
+head."""
 
 TURN_DEG: Final = 720.0
-"""How far the body turns about the vertical: every facing at least once."""
+"""Range of the body's yaw: every facing at least once."""
 
 ROOM_M: Final = 0.6
-"""How far from the middle the person is drawn, each way."""
+"""Range of the person's place about the middle, each way."""
 
 
 class Leg(NamedTuple):
-    """What carries the body at each of the KEYS poses."""
+    """The supporting leg at each of the KEYS poses."""
 
     free: NDArray[np.bool_]
     """(KEYS, 2) the leg (left, right) that is in the air."""
     squat: Vector
-    """(KEYS,) how deep both bend, 0 to 1."""
+    """(KEYS,) bend of both, 0 to 1."""
 
 
 def roaming(
     stance: dict[str, Vector], t: Vector, rng: np.random.Generator
 ) -> tuple[NDArray[np.float64], Vector]:
-    """Joint angles (n, 27) and the places that the pelvis is drawn to (n, 2).
+    """Joint angles (n, 27) and the places that attract the pelvis (n, 2).
 
     Args:
-        stance: The standing pose, (n,) an angle: where the motion starts.
+        stance: The standing pose, (n,) for each angle's name: where the motion starts.
         t: (n,) seconds since the motion began.
         rng: Source of the random poses.
     """
@@ -88,14 +88,14 @@ def roaming(
 
 
 def _legs(rng: np.random.Generator) -> Leg:
-    """In turns: left leg free, right leg free, both bent."""
+    """Alternately: left leg free, right leg free, both bent."""
     kind = rng.permuted(np.arange(KEYS) % 3)
     squat = np.where(kind == 2, _spread(KEYS, rng), 0.0)
     return Leg(np.stack([kind == 0, kind == 1], axis=1), squat)
 
 
 def _keys(name: str, leg: Leg, rng: np.random.Generator) -> Vector:
-    """The KEYS values of one joint: evenly spread over its range, in random order."""
+    """The KEYS values of one joint: evenly distributed over its range, in random order."""
     side, joint = (name[0], name[2:]) if name[1] == "_" else ("", name)
     if joint == "root_yaw":
         return np.zeros(KEYS)
@@ -118,7 +118,7 @@ def _spread(count: int, rng: np.random.Generator) -> Vector:
 
 
 def _turning(t: Vector, rng: np.random.Generator) -> Vector:
-    """Yaw that goes round, now faster, now slower, now back."""
+    """Yaw with varying speed, sometimes reversed."""
     wander = np.sin(2 * np.pi * (np.outer(t / FREE_S, [2.0, 3.0, 5.0]) + rng.random(3)))
     way = (wander - wander[np.argmin(np.abs(t))]) @ np.array([40.0, 25.0, 12.0])
     turned: Vector = np.where(t > 0, TURN_DEG * np.clip(t / FREE_S, 0, 1) + way, 0.0)
@@ -126,7 +126,7 @@ def _turning(t: Vector, rng: np.random.Generator) -> Vector:
 
 
 def _between(t: Vector, at: Vector, values: Vector) -> Vector:
-    """From each value to the next, resting an instant at each."""
+    """Interpolation of the values, with zero speed at each."""
     i = np.clip(np.searchsorted(at, t, side="right") - 1, 0, len(at) - 2)
     x = np.clip((t - at[i]) / (at[i + 1] - at[i]), 0.0, 1.0)
     found: Vector = values[i] + (values[i + 1] - values[i]) * x * x * (3.0 - 2.0 * x)
@@ -134,7 +134,7 @@ def _between(t: Vector, at: Vector, values: Vector) -> Vector:
 
 
 def _uncrowded(angles: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Arms that are lifted less to the front where they are lifted far aside."""
+    """Reduced flexion of arms that are abducted far."""
     found = angles.copy()
     for side in "lr":
         abd, flex = (ANGLES.index(f"{side}_sh_{name}") for name in ("abd", "flex"))

@@ -1,4 +1,4 @@
-"""A stream: one posture after the other in random order, with pauses, and when each was shown."""
+"""A stream: one posture after the other in random order, with pauses, and the times of each."""
 
 from typing import Final, NamedTuple
 
@@ -27,16 +27,16 @@ from synth.person.people import Person, Style, take_style
 Angles = NDArray[np.float64]
 
 PAUSE_S: Final = (0.7, 1.8)
-"""How long a person stands before and after what they do in a pause."""
+"""Standing time before and after a behaviour in a pause."""
 IDLE_S: Final = (1.5, 4.0)
 IDLE_SHARE: Final = 0.6
-"""Of the pauses that hold more than standing."""
+"""Share of the pauses with more than standing."""
 STANCE: Final = ("carry", "elbow", "stance", "toe", "lean", "headp", "yaw", "x0", "z0")
-"""What of a style does not change within a stream: how they stand."""
+"""Parts of a style that are constant within a stream: the stance."""
 ROOM_M: Final = (-0.2, -0.8)
-"""Where people stand in a stream, x and z from their usual place: who walks on has room for it."""
+"""Starting places in a stream, x and z from the usual place: a person who walks needs room."""
 LEFT_DEG: Final = 5.0
-"""A joint that is further from its stance belongs to a performance."""
+"""Deviation of a joint from its stance that belongs to a performance."""
 
 
 class Piece(NamedTuple):
@@ -47,7 +47,7 @@ class Piece(NamedTuple):
     posture: str = ""
     """"" in a pause."""
     returns: bool = False
-    """The person goes back to where they stood."""
+    """True: the person returns to their place."""
 
 
 def streamed(
@@ -56,10 +56,10 @@ def streamed(
     """One long take: the opening, then every posture once with pauses between.
 
     Args:
-        someone: Who performs.
-        seed: Of the take.
+        someone: The performer.
+        seed: Seed of the take.
         fps: Frames a second.
-        postures: Which ones; their order is drawn.
+        postures: The postures; their order is random.
     """
     rng = np.random.default_rng([someone.seed, seed, *b"stream"])
     style = take_style(someone.style, rng)
@@ -88,7 +88,7 @@ def _pieces(
 
 
 def _pause(style: Style, after: str, fps: float, rng: np.random.Generator) -> list[Piece]:
-    """Standing, mostly with something else in the middle; steps back after what led away."""
+    """Standing, mostly with a behaviour in the middle; steps back where needed."""
 
     def stand() -> Piece:
         return Piece(_moved(standing, style, fps, rng.uniform(*PAUSE_S)))
@@ -110,13 +110,14 @@ def _moved(move: Move, style: Style, fps: float, lasts_s: float) -> Angles:
 
 
 def _leash(piece: Piece, style: Style) -> Vector:
-    """Where the pelvis is drawn to, (n, 2): back to its place, or nowhere."""
+    """Places that attract the pelvis, (n, 2): its own place, or none."""
     place = (style.x0, style.z0) if piece.returns else (np.nan, np.nan)
     return np.tile(place, (len(piece.angles_deg), 1))
 
 
 def _acts(pieces: list[Piece]) -> tuple[Act, ...]:
-    """The performances: from the first to the last frame in which a joint has left its stance."""
+    """The performances: from the first to the last frame in which a joint is away from its
+    stance."""
     found, at = [], 0
     for piece in pieces:
         if piece.posture:

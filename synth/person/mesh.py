@@ -1,4 +1,4 @@
-"""A performer's surface: tubes of skin and cloth that hang on the bones."""
+"""A performer's surface: tubes of skin and cloth on the bones."""
 
 from typing import NamedTuple
 
@@ -14,16 +14,16 @@ from synth.person.tailor import arm, leg, trunk
 
 
 class Mesh(NamedTuple):
-    """A surface at rest and what moves it."""
+    """A surface at rest and its skinning."""
 
     vertices_m: NDArray[np.float64]
     """(v, 3) in the resting body."""
     origins_m: NDArray[np.float64]
-    """(bones, 3) where the bones begin at rest."""
+    """(bones, 3) starts of the bones at rest."""
     bones: NDArray[np.int64]
     """(v, 2) indices in BONES."""
     shares: Vector
-    """(v,) how much a vertex follows its second bone."""
+    """(v,) weight of the second bone."""
     faces: NDArray[np.int64]
     """(f, 3) seen from outside anticlockwise."""
     materials: NDArray[np.int64]
@@ -52,7 +52,7 @@ def body_mesh(someone: Person) -> Mesh:
 def _with_flat_soles(
     vertices: NDArray[np.float64], bones: NDArray[np.int64]
 ) -> NDArray[np.float64]:
-    """Nothing of a shoe lies below the floor of the resting body."""
+    """No part of a shoe lies below the floor of the resting body."""
     shoe = np.isin(bones[:, 0], [BONE_INDEX["l_foot"], BONE_INDEX["r_foot"]])
     found = vertices.copy()
     found[shoe, 1] = np.maximum(found[shoe, 1], 0.0)

@@ -1,4 +1,4 @@
-"""People who never were: a body, a way of moving and clothes for every seed."""
+"""Synthetic people: a body, a way of moving and clothes for every seed."""
 
 import math
 from typing import Final, Literal, NamedTuple, TypeVar
@@ -11,7 +11,7 @@ Sleeve = Literal["none", "short", "long"]
 Hair = Literal["short", "bob", "tail", "bald"]
 Pattern = Literal["plain", "hoops", "bars", "checks", "print"]
 PATTERNS: Final[tuple[Pattern, ...]] = ("plain", "hoops", "bars", "checks", "print")
-"""What shirts show, in the order of the renderer's numbers."""
+"""Patterns of shirts, in the order of the renderer's numbers."""
 
 Choice = TypeVar("Choice")
 Colour = tuple[int, int, int]
@@ -19,43 +19,44 @@ Colour = tuple[int, int, int]
 
 
 class Style(NamedTuple):
-    """How a person moves: what stays the same from take to take, up to a little."""
+    """A person's way of moving: nearly constant from take to take."""
 
     amp: float
-    """Size of every movement; 1 is the middle."""
+    """Amplitude of all movements; 1 is the mean."""
     speed: float
     asym: float
-    """How much larger the left side moves than the right, as a share."""
+    """Relative excess of the left side's movements over the right side's."""
     carry: float
-    """How far the arms hang from the trunk, degrees; so are all below without a unit."""
+    """Distance of the hanging arms from the trunk, degrees; degrees are the unit of all below
+    without one."""
     elbow: float
     stance: float
     toe: float
     lean: float
     jit: float
-    """Size of the sway that cannot be suppressed."""
+    """Amplitude of the involuntary sway."""
     headp: float
     swing: float
-    """Size of arm swings; 1 is the middle."""
+    """Amplitude of arm swings; 1 is the mean."""
     raise_to: float
     both_to: float
     over: float
     yaw: float
     snap: float
-    """Below 1 a movement starts at once, above 1 it gathers way."""
+    """Below 1 a movement starts fast, above 1 slowly."""
     cross: float
-    """How far the arms go inwards when they swing or reach forward."""
+    """Inward motion of the arms when they swing or reach forward."""
     phase: float
-    """Which leg leads and where in the cycle, in turns."""
+    """Leading leg and phase of the cycle, in turns."""
     delay: float
-    """How much later the left side is, seconds."""
+    """Delay of the left side, seconds."""
     x0: float
-    """Where they stand, metres; so is z0."""
+    """Starting place, metres; so is z0."""
     z0: float
 
 
 class Look(NamedTuple):
-    """What a person wears; loose cloth is metres between limb and cloth."""
+    """A person's clothes; looseness is in metres between limb and cloth."""
 
     sleeve: Sleeve
     shorts: bool
@@ -66,7 +67,7 @@ class Look(NamedTuple):
     loose_top_m: float
     loose_legs_m: float
     hem_m: float
-    """How far the shirt hangs below the hip joints."""
+    """Length of the shirt below the hip joints."""
     skin: Colour
     hair_colour: Colour
     shirt: Colour
@@ -82,7 +83,7 @@ class Person(NamedTuple):
     name: str
     sex: Literal["m", "f"]
     measures: dict[str, float]
-    """Metres, names as MEASURES; of the body with its clothes, joint to joint."""
+    """Metres, names as MEASURES; of the clothed body, joint to joint."""
     style: Style
     look: Look
 
@@ -110,8 +111,8 @@ MEASURES: Final[dict[str, tuple[float, float, float]]] = {
     "head_halfwidth_m": (0.049, 0.049, 0.002),
     "head_halfdepth_m": (0.064, 0.066, 0.01),
 }
-"""Shares of the stature: middle of men, middle of women, largest departure. Chosen so that a
-dozen people differ at least as much as the performers of the development clips do."""
+"""Shares of the stature: mean of men, mean of women, largest deviation. Chosen so that a dozen
+people differ at least as much as the performers of the development clips do."""
 
 MEASURE_NAMES: Final = ("stature_m", *MEASURES, "torso_m")
 
@@ -144,11 +145,11 @@ STYLE_RANGES: Final[dict[str, tuple[float, float]]] = {
 }
 
 TAKE_SHARE: Final = 0.12
-"""How far a take departs from the person's own style, as a share of the range of people."""
+"""Deviation of a take from the person's own style, as a share of the range of people."""
 
 GOLDEN, PLASTIC = 0.618034, 0.754878
-"""Steps of two sequences that fill [0, 1) evenly: even a dozen people cover short and tall,
-slim and stout."""
+"""Steps of two sequences that fill [0, 1) evenly: even a dozen people cover short and tall, slim
+and stout."""
 
 _SKINS: Final[tuple[Colour, ...]] = (
     (160, 190, 232),
@@ -162,7 +163,7 @@ _HAIRS: Final[tuple[Colour, ...]] = ((22, 22, 26), (30, 44, 70), (60, 110, 165),
 
 
 def person(seed: int) -> Person:
-    """The performer of a seed: always the same one."""
+    """The performer of a seed, always the same."""
     rng = np.random.default_rng([seed, 0])
     sex: Literal["m", "f"] = "f" if seed % 2 else "m"
     style = Style(**{n: float(rng.uniform(*ends)) for n, ends in STYLE_RANGES.items()})
@@ -170,7 +171,7 @@ def person(seed: int) -> Person:
 
 
 def take_style(style: Style, rng: np.random.Generator) -> Style:
-    """The style of one take: the person's own, with the day's departures."""
+    """The style of one take: the person's own, with random deviations."""
     departed = {}
     for name, (low, high) in STYLE_RANGES.items():
         value = getattr(style, name) + TAKE_SHARE * (high - low) * rng.uniform(-1.0, 1.0)
@@ -224,7 +225,7 @@ def _look(sex: Literal["m", "f"], rng: np.random.Generator) -> Look:
 
 
 def one_of(rng: np.random.Generator, choices: tuple[Choice, ...]) -> Choice:
-    """Any of some, all alike."""
+    """A random element, uniformly."""
     return choices[int(rng.integers(len(choices)))]
 
 

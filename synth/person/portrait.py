@@ -1,4 +1,4 @@
-"""Head, hair, hands and shoes: what tells front from back."""
+"""Head, hair, hands and shoes: the differences between front and back."""
 
 from collections.abc import Iterable
 from typing import Final
@@ -23,7 +23,7 @@ FACE: Final = (
     (0.955, 0.6, 0.62, 0.1, "skin"),
     (0.985, 0.2, 0.2, 0.1, "skin"),
 )
-"""Sections from the neck up: height and place forwards in units of neck to crown, half width and
+"""Sections from the neck up: height and forward place in units of neck to crown, half width and
 half depth in units of the head's, material. The eyes lie in the shade of the brow."""
 
 NOSE: Final = (
@@ -38,7 +38,7 @@ HAIR: Final = {
     "bob": (0.18, 1.2),
     "tail": (0.42, 1.05),
 }
-"""Height of its lower edge behind, and how far it stands off."""
+"""Height of the hair's lower edge behind, and its distance from the head."""
 
 TAIL: Final = (
     (-0.3, 0.12, 0.08, -0.42, "hair"),
@@ -48,7 +48,7 @@ TAIL: Final = (
 )
 
 DEPTH_SHARE: Final = 0.92
-"""Measured depth of a head goes from nose to hair; the skull is less deep."""
+"""Skull's depth over the measured one, which includes nose and hair."""
 
 Section = tuple[float, float, float, float, str]
 
@@ -66,7 +66,7 @@ def head(p: Person, at: dict[str, Vector]) -> list[list[Ring]]:
 
 
 def _upright(p: Person, at: dict[str, Vector], sections: Iterable[Section]) -> list[Ring]:
-    """Rings over each other on the head; those of the neck follow the chest in part."""
+    """Rings along the head; those of the neck follow the chest in part."""
     m = p.measures
     tall, x = m["neck_to_headtop_m"], m["head_halfwidth_m"]
     z, neck = DEPTH_SHARE * m["head_halfdepth_m"], float(at["head"][1])
@@ -128,7 +128,7 @@ def hand(p: Person, at: dict[str, Vector], side: str) -> list[Ring]:
 
 
 def thumb(p: Person, at: dict[str, Vector], side: str) -> list[Ring]:
-    """On the front edge of a hanging hand."""
+    """Thumb on the front edge of a hanging hand."""
     m = p.measures
     x, wrist, _ = (float(value) for value in at[f"{side}_hand"])
     long, thin = m["hand_m"], m["forearm_radius_m"]
@@ -140,7 +140,7 @@ def thumb(p: Person, at: dict[str, Vector], side: str) -> list[Ring]:
 
 
 def shoe(p: Person, at: dict[str, Vector], side: str) -> list[Ring]:
-    """Rings along z, from heel to toe; `half_z` is here the half height."""
+    """Rings along z, from heel to toe; `half_z` is the half height here."""
     m = p.measures
     x, ankle, _ = (float(value) for value in at[f"{side}_foot"])
     long, high = shoe_length(m), m["ankle_height_m"] / 2

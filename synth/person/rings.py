@@ -10,10 +10,10 @@ from synth.person.skeleton import BONE_INDEX
 
 MATERIALS: Final = ("skin", "hair", "shirt", "trousers", "shoes", "dark", "lips")
 MATERIAL: Final = {name: i for i, name in enumerate(MATERIALS)}
-"""What a face is made of: colour and pattern depend on it."""
+"""Materials of faces: they determine colour and pattern."""
 
 SIDES: Final = 16
-"""Corners of a ring."""
+"""Number of corners of a ring."""
 
 
 class Ring(NamedTuple):
@@ -24,18 +24,18 @@ class Ring(NamedTuple):
     half_z: float
     bones: tuple[str, str]
     share: float
-    """How much it follows the second bone."""
+    """Weight of the second bone."""
     material: str
-    """Of the band from here to the next ring."""
+    """Material of the band from here to the next ring."""
     square: float = 2.0
-    """Exponent of the superellipse: 2 round, more is squarer."""
+    """Exponent of the superellipse: 2 round, larger is squarer."""
 
 
 Loft = tuple[NDArray[np.float64], NDArray[np.int64], Vector, NDArray[np.int64], NDArray[np.int64]]
 
 
 def lofted(rings: list[Ring], along: str) -> Loft:
-    """Vertices, bones, shares, faces and materials of a closed tube."""
+    """Vertices, bones, weights, faces and materials of a closed tube."""
     around = 2 * np.pi * np.arange(SIDES) / SIDES
     cos, sin = np.cos(around), np.sin(around)
     if along == "z":
@@ -59,7 +59,7 @@ def lofted(rings: list[Ring], along: str) -> Loft:
 
 
 def _faces(count: int, descending: bool) -> tuple[NDArray[np.int64], list[int]]:
-    """Faces between `count` rings and over both ends, and the ring that each belongs to."""
+    """Faces between `count` rings and over both ends, and the index of each one's ring."""
     faces, bands = [], []
     for i in range(count - 1):
         for k in range(SIDES):

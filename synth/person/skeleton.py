@@ -43,27 +43,28 @@ BONES: Final = (
         for name in ("upper_arm", "forearm", "hand", "thigh", "shank", "foot")
     ),
 )
-"""What vertices hang on; a bone's frame stands in its upper joint, all parallel at rest."""
+"""The bones that vertices follow; a bone's frame is at its upper joint, all parallel at rest."""
 
 BONE_INDEX: Final = {name: i for i, name in enumerate(BONES)}
 
 NAVEL_UP, NAVEL_BACK = 0.165, 0.035
-"""Where the navel lies over the pelvis, as shares of the trunk: the spine curves."""
+"""Place of the navel above the pelvis, as shares of the trunk: the spine curves."""
 SHOULDER_SHARE, SHOULDER_DROP_SHARE = 0.473, 0.2
-"""A hanging shoulder lies this share of the shoulders' width beside the middle, and this share of
-the trunk below the neck: in a T-pose the clavicles lift it and the shoulders are wider."""
+"""Place of a hanging shoulder: this share of the shoulders' width beside the middle, and this
+share of the trunk below the neck. In a T pose the clavicles raise it and the shoulders are
+wider."""
 HEAD_FORWARD: Final = 0.16
-"""The crown lies before the neck, as a share of the way from neck to crown."""
+"""Forward place of the crown, as a share of the way from neck to crown."""
 CLAVICLE_LIFT: Final = 0.2
-"""Degrees that a shoulder rises about the neck for each degree that the arm is raised."""
+"""Rise of a shoulder about the neck, degrees per degree of the arm's elevation."""
 KNUCKLE_SHARE: Final = 0.55
-"""Where the knuckles lie between wrist and fingertip."""
+"""Place of the knuckles between wrist and fingertip."""
 FOOT_SHARE, HEEL_SHARE, BALL_SHARE = 0.152, 0.24, 0.62
-"""Length of the shoe over the stature; what of it lies behind the ankle; where its ball is."""
+"""Length of the shoe over the stature; its share behind the ankle; place of the ball."""
 HANGING_FOOT_DEG: Final = 22.0
-"""How far the toes of a foot in the air point down."""
+"""Downward angle of a foot in the air."""
 ANKLE_DEG: Final = (-42.0, 50.0)
-"""How far the ankle bends to level a sole: toes up, toes down."""
+"""Range of the ankle when it levels a sole: toes up, toes down."""
 
 
 def shoe_length(measures: dict[str, float]) -> float:
@@ -72,7 +73,7 @@ def shoe_length(measures: dict[str, float]) -> float:
 
 
 def rest_origins(measures: dict[str, float]) -> dict[str, Vector]:
-    """Where each bone begins in a body that stands at the origin with hanging arms, metres."""
+    """Start of each bone in a body that stands at the origin with hanging arms, metres."""
     m = measures
     hip_y = m["thigh_m"] + m["shin_m"] + m["ankle_height_m"]
     navel = np.array([0.0, hip_y + NAVEL_UP * m["torso_m"], -NAVEL_BACK * m["torso_m"]])
@@ -124,7 +125,8 @@ def bone_frames(measures: dict[str, float], angle: dict[str, Vector]) -> NDArray
 def _lifted_shoulder(
     chest: NDArray[np.float64], rest: dict[str, Vector], side: str, upper: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Where a shoulder is, (n, 3), raised on its clavicle: its distance from the neck stays."""
+    """Place of a shoulder, (n, 3), raised on its clavicle: its distance from the neck is
+    constant."""
     sign = 1.0 if side == "l" else -1.0
     raised_deg = np.degrees(np.arccos(np.clip(upper[:, 1, 1], -1.0, 1.0)))
     swung = turned("z", sign * CLAVICLE_LIFT * raised_deg) @ (
@@ -135,7 +137,8 @@ def _lifted_shoulder(
 
 
 def _foot_turn(shank: NDArray[np.float64], hanging: Vector) -> NDArray[np.float64]:
-    """The ankle: levels the sole where `hanging` is 0, lets the toes point down where it is 1."""
+    """The ankle: it levels the sole where `hanging` is 0, and lets the toes point down where it
+    is 1."""
     pitch = np.degrees(np.arctan2(shank[:, 1, 2], shank[:, 1, 1]))
     half = shank @ turned("x", pitch)
     roll = -np.degrees(np.arctan2(half[:, 1, 0], half[:, 1, 1]))

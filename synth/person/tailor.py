@@ -1,4 +1,4 @@
-"""Trunk, arms and legs in their clothes: cloth is wider than the limb and ends in a hem."""
+"""Trunk, arms and legs in clothes: cloth is wider than the limb and ends in a hem."""
 
 from typing import Final
 
@@ -9,9 +9,9 @@ from synth.person.people import Person
 from synth.person.rings import Ring
 
 SKIRT: Final = 3.2
-"""How square a hanging shirt is: two thighs are behind its front."""
+"""Exponent of a hanging shirt's section: two thighs are behind its front."""
 STEP_M: Final = 0.002
-"""Length over which cloth ends: a hem is a step in the radius."""
+"""Length over which cloth ends: a hem is a step of the radius."""
 
 
 def trunk(p: Person, at: dict[str, Vector]) -> list[Ring]:
@@ -54,7 +54,7 @@ def trunk(p: Person, at: dict[str, Vector]) -> list[Ring]:
 
 
 def _hemmed(rings: list[Ring], hem: float, loose: float, thigh_depth: float) -> list[Ring]:
-    """Trousers below the hem, the shirt over them: it hangs straight down from the widest ring,
+    """Trousers below the hem, the shirt above: it hangs straight down from the widest ring,
     before the thighs."""
     widest = rings[2]
     drop = max(hem, widest.centre[1])
@@ -72,7 +72,7 @@ def _hemmed(rings: list[Ring], hem: float, loose: float, thigh_depth: float) -> 
 
 
 def arm(p: Person, at: dict[str, Vector], side: str) -> list[Ring]:
-    """From the shoulder's cap to the wrist."""
+    """From the top of the shoulder to the wrist."""
     m, look = p.measures, p.look
     x, shoulder, _ = (float(value) for value in at[f"{side}_upper_arm"])
     upper, fore = m["upper_arm_m"], m["forearm_m"]
@@ -112,7 +112,7 @@ def arm(p: Person, at: dict[str, Vector], side: str) -> list[Ring]:
 def _cut(
     girth: tuple[tuple[float, float, float], ...], ends: float, loose: float
 ) -> list[tuple[float, float, float, bool]]:
-    """Sections (down, radius, share, cloth?) of a limb with cloth down to `ends`."""
+    """Sections (down, radius, weight, cloth?) of a limb with cloth down to `ends`."""
     downs, radii, shares = zip(*girth, strict=True)
     r, share = float(np.interp(ends, downs, radii)), float(np.interp(ends, downs, shares))
     wide = [
@@ -125,7 +125,7 @@ def _cut(
 
 
 def leg(p: Person, at: dict[str, Vector], side: str) -> list[Ring]:
-    """From the hip to the ankle; it starts inside of the trunk's contour."""
+    """From the hip to the ankle; it begins inside the trunk's contour."""
     m, look = p.measures, p.look
     x, hip, _ = (float(value) for value in at[f"{side}_thigh"])
     sign = 1.0 if side == "l" else -1.0

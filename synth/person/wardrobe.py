@@ -1,4 +1,4 @@
-"""Clothes of all cuts and colours: what people wear whom a network has to know by their picture."""
+"""Clothes of all cuts and colours, for networks that look at pictures."""
 
 from typing import Final
 
@@ -7,28 +7,28 @@ import numpy as np
 from synth.person.people import PATTERNS, Colour, Hair, Look, Person, Sleeve, one_of
 
 LONG_SHARE: Final = 0.16
-"""Of the people: how many wear something that hangs over the thighs, a skirt or a coat."""
+"""Share of the people with clothes that hang over the thighs, a skirt or a coat."""
 LONG_M: Final = (0.12, 0.55)
-"""How far that hangs below the hip joints."""
+"""Range of their length below the hip joints."""
 ALIKE_SHARE: Final = 0.18
-"""Of the people: how many wear top and trousers of one colour."""
+"""Share of the people with top and trousers of one colour."""
 GREY_SHARE: Final = 0.35
-"""Of the colours: how many are hardly any."""
+"""Share of nearly grey colours."""
 LOOSE_M: Final = (0.002, 0.035)
 SLEEVES: Final[tuple[Sleeve, ...]] = ("none", "short", "short", "long", "long")
 HAIRS: Final[tuple[Hair, ...]] = ("bald", "short", "short", "bob", "tail")
 SKINS: Final = ((190, 205, 240), (36, 52, 82))
 HAIR: Final = ((90, 150, 190), (12, 14, 18))
-"""The lightest and the darkest, blue, green, red."""
+"""The lightest and the darkest skin, blue, green, red."""
 DYED_SHARE, BARE_SHARE = 0.1, 0.12
-"""Of the people: whose hair has any colour, who wear no shoes."""
+"""Shares of the people with hair of any colour, and without shoes."""
 
 
 def dressed(someone: Person, rng: np.random.Generator) -> Person:
     """The same person in other clothes, of any colour.
 
     Args:
-        someone: Who they are.
+        someone: The person.
         rng: Source of all choices.
     """
     shirt = _dye(rng)

@@ -1,4 +1,4 @@
-"""What stands behind a person in a picture: rooms, and heaps of shapes that no room has."""
+"""Backgrounds of people in pictures: rooms, and abstract heaps of shapes."""
 
 from typing import Final
 
@@ -12,16 +12,16 @@ from synth.picture.synth_room import furnished
 Backdrop = NDArray[np.uint8]
 
 SIDE_PX: Final = 170
-"""Of a backdrop: pictures are cut out of it."""
+"""Side of a backdrop: pictures are cut out of it."""
 ROOM_SHARE: Final = 0.25
 SHAPES: Final = (4, 70)
 SIZES: Final = (0.03, 0.9)
-"""Radii of the shapes, in sides: small ones are as many as they cover (Lee et al. 2001)."""
+"""Radii of the shapes, in sides: their frequency falls as their area grows (Lee et al. 2001)."""
 GREY_SHARE: Final = 0.4
 
 
 def backdrop(seed: int) -> Backdrop:
-    """(SIDE_PX, SIDE_PX, 3) blue, green, red; a seed is a backdrop."""
+    """(SIDE_PX, SIDE_PX, 3) blue, green, red; each seed is one backdrop."""
     rng = np.random.default_rng([seed, 80])
     return _of_a_room(rng) if rng.random() < ROOM_SHARE else _heaped(rng)
 
@@ -37,7 +37,7 @@ def _of_a_room(rng: np.random.Generator) -> Backdrop:
 
 
 def _heaped(rng: np.random.Generator) -> Backdrop:
-    """Shapes over each other, each with a grain of its own: a scene without meaning."""
+    """Overlapping shapes, each with its own grain: a scene without meaning."""
     picture = np.empty((SIDE_PX, SIDE_PX, 3), np.float32)
     picture[:] = _tint(rng)
     slope = rng.normal(0.0, 60.0, 2)
@@ -51,7 +51,7 @@ def _heaped(rng: np.random.Generator) -> Backdrop:
 
 
 def _lay(picture: NDArray[np.float32], rng: np.random.Generator) -> None:
-    """One more shape on the heap."""
+    """Add one shape."""
     mask = np.zeros((SIDE_PX, SIDE_PX), np.uint8)
     low, high = SIZES
     radius = SIDE_PX * low / max(rng.random(), low / high) ** 0.7

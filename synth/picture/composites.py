@@ -1,4 +1,4 @@
-"""Synthetic people before backdrops, lit, hidden and recorded as badly as cheap cameras do it."""
+"""Synthetic people before backdrops, with light, occlusion and the flaws of cheap cameras."""
 
 from collections.abc import Callable
 from typing import Final, NamedTuple
@@ -14,38 +14,38 @@ from synth.picture.picture_examples import SIDE_PX, PictureExample
 
 Floats = NDArray[np.float32]
 UNKNOWN: Final = 128
-"""Of a silhouette that is not told."""
+"""Value of an unknown silhouette."""
 NOBODY_SHARE: Final = 0.04
-"""Of the pictures: how many show the backdrop alone."""
+"""Share of the pictures with the backdrop alone."""
 ALIKE_SHARE, PLAIN_SHARE = 0.15, 0.2
-"""How many backdrops have a colour of the person's, or hardly any pattern."""
+"""Share of backdrops with a colour of the person's, and share with hardly any pattern."""
 BEHIND_SHARE, BEFORE_SHARE = 0.15, 0.04
-"""How many pictures show another person behind or before the person."""
+"""Share of pictures with another person behind or before the person."""
 SHADOW_SHARE, HIDDEN_SHARE, BORDER_SHARE = 0.35, 0.12, 0.12
-"""How many show the person's shadow, something before the person, the picture's border."""
+"""Shares with the person's shadow, with an object before the person, with the picture's border."""
 COARSEST: Final = 1.3
-"""Logarithm of how many times coarser than the window a picture may be."""
+"""Logarithm of the ratio by which a picture is coarser than the window."""
 COARSE_SHARE, SMEARED_SHARE, GREY_SHARE, JPEG_SHARE = 0.6, 0.15, 0.25, 0.3
 UNTOLD_SHARE, RAGGED_SHARE = 0.3, 0.15
-"""How many silhouettes are not told, or are ragged, holed, and hold what is no person."""
+"""Shares of silhouettes that are unknown, ragged, with holes, or with other foreground."""
 TURN_DEG, LARGER, BESIDE_PX = 6.0, 0.12, 0.021 * SIDE_PX
 FINE_TINT, EXPOSURE = 0.07, 0.25
 """Standard deviations of the logarithms of colours' gains, and of all other ones."""
 
 
 class Composite(NamedTuple):
-    """One picture, and what is true of it."""
+    """One picture, and its ground truth."""
 
     picture: NDArray[np.uint8]
     """(SIDE_PX, SIDE_PX, 3) blue, green, red."""
     outline: NDArray[np.uint8]
-    """(SIDE_PX, SIDE_PX) 255 inside, 0 outside; all UNKNOWN where it is not told."""
+    """(SIDE_PX, SIDE_PX) 255 inside, 0 outside; all UNKNOWN where it is unknown."""
     joints_px: Floats
     """(15, 2) JOINT_NAMES order."""
     inside: NDArray[np.bool_]
-    """(15,) which of them are in the picture; none where no person is."""
+    """(15,) which of them are in the picture; none without a person."""
     facing: Floats
-    """(2,) as in PictureExample; 0 where no person is."""
+    """(2,) as in PictureExample; 0 without a person."""
     stature_px: float
     nobody: bool
 
@@ -62,7 +62,7 @@ Draw = Callable[[], PictureExample]
 def composite(
     example: PictureExample, other: Draw, backdrop: Callable[[], Backdrop], rng: np.random.Generator
 ) -> Composite:
-    """One of the many pictures that can be made of an example.
+    """One of many random pictures of an example.
 
     Args:
         example: The person.
@@ -112,7 +112,7 @@ def _behind(
     backdrop: Callable[[], Backdrop],
     rng: np.random.Generator,
 ) -> Floats:
-    """What stands behind the person."""
+    """The background of the person."""
     behind, chance = _cut(backdrop(), rng), rng.random()
     rows, columns = np.nonzero(coverage[..., 0] > 0.9)
     if chance < ALIKE_SHARE and len(rows):
@@ -128,7 +128,7 @@ def _behind(
 
 
 def _with_other(picture: Floats, other: PictureExample, rng: np.random.Generator) -> Floats:
-    """Another person over the picture, of another size, elsewhere."""
+    """Another person over the picture, of another size, in another place."""
     warp = np.eye(2, 3, dtype=np.float32) * np.float32(rng.uniform(0.4, 1.1))
     warp[:, 2] = rng.uniform(-SIDE_PX / 2, SIDE_PX / 2, 2)
     body = cv2.warpAffine(other.body, warp, (SIDE_PX, SIDE_PX)).astype(np.float32)
@@ -152,7 +152,7 @@ def _shadowed(behind: Floats, coverage: Floats, rng: np.random.Generator) -> Flo
 
 
 def _hidden(layers: _Layers, backdrop: Callable[[], Backdrop], rng: np.random.Generator) -> _Layers:
-    """Something before the person: a table's edge, a box."""
+    """An object before the person: a table's edge, a box."""
     if rng.random() >= HIDDEN_SHARE:
         return layers
     over = np.zeros((SIDE_PX, SIDE_PX), np.bool_)
@@ -172,7 +172,7 @@ def _hidden(layers: _Layers, backdrop: Callable[[], Backdrop], rng: np.random.Ge
 def _turned(
     layers: _Layers, example: PictureExample, rng: np.random.Generator
 ) -> tuple[_Layers, Floats, Floats, float]:
-    """All of it turned, larger, beside its place, mirrored; the joints and facing of that."""
+    """Random rotation, scale, shift and mirroring of everything, with its joints and facing."""
     larger = float(np.exp(rng.uniform(-LARGER, LARGER)))
     middle = (SIDE_PX / 2 - 0.5, SIDE_PX / 2 - 0.5)
     warp = cv2.getRotationMatrix2D(middle, float(rng.normal(0.0, TURN_DEG)), larger)
@@ -191,7 +191,7 @@ def _turned(
 
 
 def _border(rng: np.random.Generator) -> tuple[slice, slice] | None:
-    """The part of the window that lies beyond the camera's picture."""
+    """Blacken the part of the window beyond the camera's picture."""
     if rng.random() >= BORDER_SHARE:
         return None
     wide, everything = int(rng.uniform(0.03, 0.35) * SIDE_PX), slice(0, SIDE_PX)
@@ -209,7 +209,7 @@ def _beyond(edge: tuple[slice, slice] | None, joints: Floats) -> NDArray[np.bool
 
 
 def _filmed(picture: Floats, rng: np.random.Generator) -> NDArray[np.uint8]:
-    """What a camera makes of it: coarse, smeared, grey, too dark, noisy, compressed."""
+    """Camera flaws: coarse, smeared, grey, too dark, noisy, compressed."""
     size = (SIDE_PX, SIDE_PX)
     if rng.random() < COARSE_SHARE:
         few = max(20, int(SIDE_PX / np.exp(rng.uniform(0.0, COARSEST))))
@@ -242,7 +242,7 @@ def _developed(picture: Floats, rng: np.random.Generator) -> NDArray[np.uint8]:
 
 
 def _told(outline: NDArray[np.uint8], rng: np.random.Generator) -> NDArray[np.uint8]:
-    """The silhouette as the network is shown it."""
+    """The silhouette in the form of the network's input."""
     told, chance = outline * np.uint8(255), rng.random()
     if chance < UNTOLD_SHARE:
         told[:] = UNKNOWN
@@ -260,6 +260,6 @@ def _told(outline: NDArray[np.uint8], rng: np.random.Generator) -> NDArray[np.ui
 
 
 def _blots(few: int, rng: np.random.Generator) -> Vector:
-    """(SIDE_PX, SIDE_PX) smooth noise of so many hills each way."""
+    """(SIDE_PX, SIDE_PX) smooth noise with that many hills each way."""
     hills = rng.standard_normal((few, few), np.float32)
     return np.asarray(cv2.resize(hills, (SIDE_PX, SIDE_PX)))

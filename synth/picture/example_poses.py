@@ -1,4 +1,4 @@
-"""Poses of people who are pictured: of one performance, or without order."""
+"""Poses of people for pictures: of one performance, or random."""
 
 from typing import Final
 
@@ -10,9 +10,9 @@ from synth.person.skeleton import ANGLES
 from synth.picture.silhouette_examples import AT_LARGE, course
 
 WILD_SHARE: Final = 0.5
-"""Of the people: how many hold poses that have nothing to do with each other."""
+"""Share of the people with unrelated poses."""
 FALLEN_SHARE: Final = 0.3
-"""Of the wild poses: how many lie, crawl or fall."""
+"""Share of the random poses that lie, crawl or fall."""
 WILD_DEG: Final[dict[str, tuple[float, float]]] = {
     "torso_pitch": (-20.0, 75.0),
     "torso_roll": (-25.0, 25.0),
@@ -33,9 +33,9 @@ WILD_DEG: Final[dict[str, tuple[float, float]]] = {
     "root_roll": (-12.0, 12.0),
     "root_yaw": (-180.0, 180.0),
 }
-"""How far the joints of a wild pose go, by their names in ANGLES without the side."""
+"""Range of each joint in a random pose, by its name in ANGLES without the side."""
 CALM: Final = 1.3
-"""Wild angles gather about what is held at rest: the power of a chance that is at most 1."""
+"""Exponent that concentrates random angles around the rest pose."""
 REST_DEG: Final = {"sh_abd": 10.0, "sh_flex": 5.0, "elbow": 15.0, "hip_flex": 3.0, "knee": 5.0}
 FALLEN_DEG: Final = (50.0, 110.0)
 
@@ -44,8 +44,8 @@ def poses_deg(someone: Person, n: int, rng: np.random.Generator) -> NDArray[np.f
     """Angles in the order of ANGLES, (n, 27).
 
     Args:
-        someone: Who moves.
-        n: How many poses.
+        someone: The person.
+        n: Number of poses.
         rng: Source of them.
     """
     if rng.random() < WILD_SHARE:
@@ -57,7 +57,7 @@ def poses_deg(someone: Person, n: int, rng: np.random.Generator) -> NDArray[np.f
 
 
 def _wild(n: int, rng: np.random.Generator) -> NDArray[np.float64]:
-    """(n, 27) angles of poses without order."""
+    """(n, 27) angles of random poses."""
     columns = []
     for name in ANGLES:
         low, high = WILD_DEG[name[2:] if name[1] == "_" else name]

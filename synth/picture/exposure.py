@@ -1,4 +1,4 @@
-"""How the cameras stand and expose: the default rig, gain over time, which frames smear."""
+"""Place and exposure of the cameras: the default rig, gain over time, frames with motion blur."""
 
 from typing import Final
 
@@ -10,9 +10,9 @@ from common.rig.camera import Rig, paper_rig
 from synth.motion.motions import Motion
 
 BLUR_M: Final = 0.06
-"""A joint that moves this far in a frame leaves a blurred picture."""
+"""Displacement of a joint per frame from which on the picture is blurred."""
 FLICKER_HZ: Final = (1.3, 3.1)
-"""What is left of the lamp's flicker at the cameras' rate."""
+"""Remaining amplitude of the lamp's flicker at the cameras' rate."""
 
 
 def default_rig(width: int, height: int) -> Rig:
@@ -22,7 +22,7 @@ def default_rig(width: int, height: int) -> Rig:
 
 
 def exposures(cameras: int, count: int, seed: int, fps: float) -> Vector:
-    """How bright each frame is, (cameras, count): flicker and a step of the exposure."""
+    """Gain of each frame, (cameras, count): flicker and a step of the exposure."""
     rng = np.random.default_rng([seed, 2])
     t = np.arange(count) / fps
     flicker = 0.006 * np.sin(2 * np.pi * (np.outer(FLICKER_HZ, t) + rng.random((2, 1)))).sum(axis=0)
@@ -34,6 +34,6 @@ def exposures(cameras: int, count: int, seed: int, fps: float) -> Vector:
 
 
 def blurred(motion: Motion) -> NDArray[np.bool_]:
-    """Which frames (n,) show movement that smears."""
+    """Which frames (n,) have motion blur."""
     moved = np.linalg.norm(np.diff(motion.joints_m, axis=0), axis=-1).max(axis=-1)
     return np.append(False, np.nan_to_num(moved) > BLUR_M)

@@ -1,4 +1,4 @@
-"""What is wrong with silhouettes that are cut out of a video."""
+"""Flaws of silhouettes that are segmented from a video."""
 
 from typing import Final, Literal, NamedTuple
 
@@ -7,19 +7,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 SHADOW_SHARE, THICK_SHARE, THIN_SHARE, ROUND_SHARE = 0.5, 0.3, 0.1, 0.15
-"""Of the silhouettes of a camera: how many keep a shadow at the feet, are a pixel too thick or too
-thin somewhere, or have their thin parts rounded off."""
+"""Shares of a camera's silhouettes that keep a shadow at the feet, are a pixel too thick or too
+thin in places, or have their thin parts rounded off."""
 HOLE_SHARE: Final = 0.3
-"""Of the cameras: in how many pieces of the silhouette are missing for a while."""
+"""Share of the cameras whose silhouettes lack pieces for a while."""
 
 
 class Flaw(NamedTuple):
-    """How the silhouettes of one camera are wrong, all through a performance."""
+    """Flaws of one camera's silhouettes, constant through a performance."""
 
     kind: Literal["thick", "thin", "round", "none"]
     kernel: tuple[int, int]
     shadow: tuple[float, float, float, float] | None
-    """The blot at the feet: where between them, how low, how wide, how high, in heights."""
+    """The shadow at the feet: its place between them, depth, width, height, in heights."""
     holes: NDArray[np.bool_]
     """(n,) whether a piece is missing."""
     hole: tuple[float, float, float, float]
@@ -27,7 +27,7 @@ class Flaw(NamedTuple):
 
 
 def flaw(n: int, rng: np.random.Generator) -> Flaw:
-    """Of one camera, all through a performance of `n` instants."""
+    """Flaws of one camera, constant through a performance of `n` instants."""
     shares = (THICK_SHARE, THIN_SHARE, ROUND_SHARE)
     at = int(np.searchsorted(np.cumsum(shares), rng.random()))
     kinds: tuple[Literal["thick", "thin", "round", "none"], ...]
@@ -44,7 +44,7 @@ def flaw(n: int, rng: np.random.Generator) -> Flaw:
 
 
 def spoilt(mask: NDArray[np.uint8], flaw: Flaw, i: int) -> NDArray[np.uint8]:
-    """A silhouette as one that was cut out of a video: with a shadow, too thick, too thin."""
+    """A silhouette with the flaws of a segmented one: with a shadow, too thick, too thin."""
     if not mask.any():
         return mask
     rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))

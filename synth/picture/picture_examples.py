@@ -1,4 +1,4 @@
-"""Pictures of synthetic people whose joints are known, for a network that looks at pictures."""
+"""Pictures of synthetic people with known joints, for networks that look at pictures."""
 
 from collections.abc import Iterator
 from typing import Final, NamedTuple
@@ -20,73 +20,74 @@ from synth.picture.render import palette
 from synth.picture.silhouette_examples import PEOPLE, differing
 
 SIDE_PX: Final = 128
-"""Of a picture: as large as the network sees it."""
+"""Side of a picture: the network's input size."""
 FINER: Final = 2
 """Samples across a pixel."""
 PICTURES: Final = 16
-"""Of one person."""
+"""Number of pictures of one person."""
 DISTANCE_M, RISE_DEG, ROLL_DEG = (1.6, 7.0), (-12.0, 55.0), 8.0
-"""Range of the cameras, how far above the body's middle they stand, and how they are rolled."""
+"""Ranges of the cameras' distance, height above the body's middle, and roll."""
 ANYHOW_SHARE: Final = 0.08
-"""Of the pictures: how many are rolled in any way."""
+"""Share of the pictures with any roll."""
 FRAME: Final = (-0.12, 0.3)
-"""Logarithm of how much larger a picture is than FRAMED times the body's longer side."""
+"""Range of the logarithm of a picture's side over FRAMED times the body's longer side."""
 FRAMED: Final = 1.25
-"""The longer side of the body's box in an ideal picture, over it: what a viewer cuts out."""
+"""Longer side of the body's box over the side of an ideal picture, a viewer's window."""
 SMALL_SHARE, SMALL = 0.12, (0.3, 1.2)
-"""Of the pictures: how many show the person smaller, and by what logarithm."""
+"""Share of the pictures with a smaller person, and the logarithm of the factor."""
 ASIDE: Final = (0.04, 0.14)
-"""Standard deviation of the body's middle from the picture's, in sides; seldom the second."""
+"""Standard deviation of the body's middle from the picture's, in sides; the second value is
+rare."""
 ASTRAY_SHARE: Final = 0.2
-"""Of the pictures: how many are farther off."""
+"""Share of the pictures with the second value."""
 SEEN_AS: Final = [JOINTS.index(name) for name in JOINT_NAMES]
 
 
 class PictureExample(NamedTuple):
-    """One person in one picture, before no background."""
+    """One person in one picture, without a background."""
 
     body: NDArray[np.uint8]
     """(SIDE_PX, SIDE_PX, 4) blue, green, red, times coverage; coverage."""
     outline: NDArray[np.uint8]
-    """(SIDE_PX, SIDE_PX) 1 inside of the silhouette, as it is cut out of a video."""
+    """(SIDE_PX, SIDE_PX) 1 inside of the silhouette, with the flaws of a segmented one."""
     joints_px: NDArray[np.float32]
     """(15, 2) JOINT_NAMES order; also beyond the picture."""
     facing: NDArray[np.float32]
     """(2,) the front of the trunk in the camera's axes: to the right, towards the camera."""
     stature_px: float
-    """Of the person upright, at that distance."""
+    """Height of the person upright, in pixels at that distance."""
 
 
 class Shown(NamedTuple):
-    """A body that is drawn, and what is true of it."""
+    """A body to draw, and its ground truth."""
 
     places_m: NDArray[np.float64]
     """(v, 3) world."""
     rest_m: NDArray[np.float64]
-    """(v, 3) at rest, where patterns are woven."""
+    """(v, 3) at rest, where patterns are defined."""
     faces: NDArray[np.int64]
     """(f, 3) seen from outside anticlockwise."""
     materials: NDArray[np.int64]
     """(f,) indices in MATERIALS."""
     colours: NDArray[np.float64]
-    """Of MATERIALS, then the shirt's second colour."""
+    """Colours of MATERIALS, then the shirt's second colour."""
     pattern: tuple[float, float, float]
     joints_m: NDArray[np.float64]
     """(15, 3) JOINT_NAMES order, world."""
     front: Vector
-    """(3,) whereto the chest points."""
+    """(3,) direction of the chest."""
     stature_m: float
 
 
 class _View(NamedTuple):
-    """One picture's camera: rows of its axes in the world, and where it stands."""
+    """One picture's camera: rows of its axes in the world, and its place."""
 
     axes: NDArray[np.float64]
     place_m: Vector
 
 
 def picture_examples(seed: int) -> Iterator[PictureExample]:
-    """The pictures of one person; a seed is a person."""
+    """The pictures of one person; each seed is one person."""
     rng = np.random.default_rng([seed, 79])
     someone = dressed(differing(person(int(rng.integers(*PEOPLE))), rng), rng)
     mesh, angles = body_mesh(someone), poses_deg(someone, PICTURES, rng)
@@ -98,7 +99,7 @@ def picture_examples(seed: int) -> Iterator[PictureExample]:
 
 
 def shirt_pattern(look: Look) -> tuple[float, float, float]:
-    """Kind, pitch in metres and material, as `draw` wants it."""
+    """Kind, pitch in metres and material, in the form of `draw`."""
     return (float(PATTERNS.index(look.pattern)), look.pitch_m, float(MATERIAL["shirt"]))
 
 
@@ -120,7 +121,7 @@ def _moved(someone: Person, mesh: Mesh, body: Posed, i: int) -> Shown:
 
 
 def pictured(shown: Shown, rng: np.random.Generator) -> PictureExample | None:
-    """A picture of a body from anywhere; None where it is partly behind the camera.
+    """A picture of a body from any direction; None where it is partly behind the camera.
 
     Args:
         shown: The body.
@@ -149,7 +150,7 @@ def pictured(shown: Shown, rng: np.random.Generator) -> PictureExample | None:
 
 
 def _looking(middle_m: Vector, rng: np.random.Generator) -> _View:
-    """A camera that looks at a body from anywhere."""
+    """A camera that looks at a body from any direction."""
     rise, away = np.radians(rng.uniform(*RISE_DEG) * rng.random()), rng.uniform(*DISTANCE_M)
     at = rng.uniform(0.0, 2 * np.pi)
     place = middle_m + away * np.array(

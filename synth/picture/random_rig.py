@@ -1,4 +1,4 @@
-"""Cameras as people put them up: pairs, and any number around a person."""
+"""Random camera rigs as people set them up: pairs, and any number around a person."""
 
 from typing import Final
 
@@ -13,29 +13,31 @@ from synth.picture.exposure import default_rig
 
 WIDTHS_PX: Final = (160, 320)
 HEIGHTS_M, FOCALS = (0.8, 1.4), (1.0, 1.4)
-"""Ranges; focal lengths in widths of the picture at 4.5 m."""
+"""Ranges of height, distance and focal length; focal lengths in picture widths at 4.5 m."""
 APART_DEG, RISE_M, ROLL_DEG = (50.0, 130.0), (0.5, 2.6), 6.0
-"""Of cameras that stand anywhere."""
+"""Ranges for cameras that stand anywhere."""
 FRONT_SHARE, ASIDE_SHARE, ABOUT_DEG = 0.3, 0.25, 15.0
-"""Shares of the first cameras about a person that stand about before them, and beside them; the
-deviation of these."""
+"""Shares of first cameras that stand about before the person, and beside them; the deviation of
+these."""
 HEIGHTS_PX: Final = (240, 240, 180, 427)
-"""Of pictures 320 wide."""
+"""Focal length of pictures 320 wide."""
 LEVEL_SHARE, LEVEL_M, HUNG_M, ROLLED_SHARE, ROLLED_DEG = 0.6, (0.7, 1.5), (0.3, 3.2), 0.3, 4.0
 DISTANCES_M, WIDTHS, AT_M = (2.2, 5.8), (0.85, 1.4), 4.5
-"""Ranges; focal lengths in widths, as HOW_FAR times those for whoever stands nearer or farther."""
+"""Ranges of distances, and focal lengths in widths, as HOW_FAR times those for a nearer or
+farther person."""
 HOW_FAR: Final = (0.75, 1.3)
 CROSS_DEG, CROSSED_SHARE, RIGHT_SHARE = (45.0, 135.0), 0.5, 0.3
-"""The angle to the second camera, of those where it is not 90; how many stand to the right."""
+"""Angle to the second camera, where it is not 90; share of those to the right."""
 FURTHER_DEG: Final = (135.0, 60.0, -150.0, -30.0, 100.0, 165.0)
-"""Bearings of camera 3 and on; the default rig's are 0, before the person, and -90, at their right.
-Any first few of them are spread. No two stand opposite each other, where rays coincide."""
+"""Bearings of camera 3 and on; the default rig's are 0, before the person, and -90, at their
+right. Any first few of them are evenly spread. No two stand opposite each other, where rays
+coincide."""
 MOST_CAMERAS: Final = 2 + len(FURTHER_DEG)
-"""Of a rig around a person."""
+"""Ranges for a rig around a person."""
 FURTHER_OFF_DEG, FURTHER_FAR_M, FURTHER_HIGH_M = 5.0, (4.5, 5.0), (0.8, 2.2)
-"""How far from their bearings those may stand; how far from the middle, and how high."""
+"""Deviations of their bearings; ranges of distance and height."""
 FURTHER_AIM_M, FURTHER_FOCALS, FURTHER_ROLL_DEG = (0.9, 1.05), (0.92, 1.0), 1.0
-"""The height that they look at; focal length in those of the default rig; deviation of the roll."""
+"""Height of the point looked at; focal length over the default rig's; deviation of the roll."""
 
 
 def random_rig(
@@ -45,7 +47,7 @@ def random_rig(
 
     Args:
         rng: Source of all choices.
-        slanted_share: How probably they stand anywhere, look down and are rolled.
+        slanted_share: Probability that they stand anywhere, look down and are rolled.
         distances_m: From the nearest to the farthest.
     """
     width = int(rng.choice(WIDTHS_PX))
@@ -70,8 +72,8 @@ def rig_around(size: tuple[int, int], count: int, seed: int) -> Rig:
 
     Args:
         size: Width and height of the pictures.
-        count: How many cameras, 1 to MOST_CAMERAS; a rig of more begins with those of fewer.
-        seed: Of where exactly the further ones stand.
+        count: Number of cameras, 1 to MOST_CAMERAS; a rig of more begins with those of fewer.
+        seed: Seed of the exact places of the further ones.
     """
     rig = default_rig(*size)
     rng = np.random.default_rng([seed, 4])
@@ -80,7 +82,7 @@ def rig_around(size: tuple[int, int], count: int, seed: int) -> Rig:
 
 
 def _further(n: int, size: tuple[int, int], rig: Rig, rng: np.random.Generator) -> Camera:
-    """Camera n, from 0, of a rig around: it looks at the middle of a body."""
+    """Camera n, from 0, of a rig around a person: it looks at the middle of a body."""
     at_deg = FURTHER_DEG[n - 2] + rng.uniform(-FURTHER_OFF_DEG, FURTHER_OFF_DEG)
     place = _on_circle(at_deg, rng.uniform(*FURTHER_FAR_M), rng.uniform(*FURTHER_HIGH_M))
     roll_deg = FURTHER_ROLL_DEG * rng.normal()
@@ -89,11 +91,11 @@ def _further(n: int, size: tuple[int, int], rig: Rig, rng: np.random.Generator) 
 
 
 def rig_about(rng: np.random.Generator, middle_m: Vector) -> Rig:
-    """Two cameras anywhere about a person who faces +z at first.
+    """Two cameras anywhere around a person who faces +z at first.
 
     Args:
         rng: Source of all choices.
-        middle_m: (3,) of the body.
+        middle_m: (3,) middle of the body.
     """
     size = (320, int(rng.choice(HEIGHTS_PX)))
     chance, about_deg = rng.random(), ABOUT_DEG * rng.normal()
@@ -132,7 +134,8 @@ def _about(
 
 
 def _looking(place: Vector, aim_m: float) -> NDArray[np.float64]:
-    """From the world to the axes of who looks at so high above the floor's middle, not rolled."""
+    """From the world to the axes of a camera without roll that looks at a point above the
+    floor's middle."""
     forward = np.array([0.0, aim_m, 0.0]) - place
     forward /= np.linalg.norm(forward)
     right = np.cross(forward, [0.0, 1.0, 0.0])
@@ -148,7 +151,7 @@ def _on_circle(at_deg: float, far_m: float, high_m: float) -> Vector:
 def _slanted(
     n: int, size: tuple[int, int], place: Vector, focal_px: float, rng: np.random.Generator
 ) -> Camera:
-    """A camera somewhere on the circle that looks at the middle of a body, rolled a little."""
+    """A camera anywhere on the circle that looks at the middle of a body, slightly rolled."""
     level = _looking(place, rng.uniform(0.8, 1.1))
     R = turned("z", np.array([rng.normal(0.0, ROLL_DEG)]))[0] @ level
     return _camera(n, size, focal_px, R, place)

@@ -1,4 +1,4 @@
-"""Compiled inner loops of the renderer: move a surface, draw it, put it before the room."""
+"""Compiled inner loops of the renderer: move a surface, draw it, composite it over the room."""
 
 import math
 from typing import Final
@@ -11,11 +11,11 @@ from common.compiled import compiled, compiling
 from synth.person.people import PATTERNS
 
 AMBIENT: Final = 0.52
-"""Light that comes from everywhere, as a share of all."""
+"""Share of ambient light."""
 WRAP: Final = 0.35
-"""How far the key light reaches round a body: cloth scatters."""
+"""How far the key light wraps around a body: cloth scatters."""
 THREADS: Final = 90.0
-"""Threads of the coarse weave a metre: cloth and skin are never quite even."""
+"""Threads per metre of the coarse weave: cloth and skin are never uniform."""
 HOOPS, BARS, CHECKS, PRINT = (PATTERNS.index(n) for n in ("hoops", "bars", "checks", "print"))
 
 
@@ -28,7 +28,7 @@ def skin(
     frames: Floats,
     out: Floats,
 ) -> None:
-    """Place the vertices: each follows its two bones in its share.
+    """Place the vertices by linear blend skinning over two bones.
 
     Args:
         vertices: (v, 3) at rest.
@@ -135,10 +135,10 @@ def draw(
     """Draw a surface with a depth buffer.
 
     Args:
-        pixels: (v, 2) where the vertices are seen; NaN behind the camera.
+        pixels: (v, 2) pixels of the vertices; NaN behind the camera.
         depths: (v,) metres.
         light: (v,) brightness.
-        rest: (v, 3) at rest: patterns are woven there, so cloth carries them along.
+        rest: (v, 3) at rest: patterns are defined there, so cloth carries them along.
         faces: (f, 3), front ones clockwise in the picture (y down).
         materials: (f,).
         palette: (materials + 1, 3) colours; the last one is the shirt's second colour.
@@ -185,7 +185,8 @@ def draw(
 def _woven(
     material: int, pattern: tuple[float, float, float], x: float, y: float, z: float
 ) -> tuple[bool, float]:
-    """Whether cloth has its second colour at a point at rest, and how bright a thread is there."""
+    """Whether cloth has its second colour at a point at rest, and the brightness of a thread
+    there."""
     second = material == pattern[2] and _second(pattern[0], pattern[1], x, y, z)
     thread = math.floor(x * THREADS) ^ math.floor((y + z) * THREADS)
     return second, 0.98 + 0.04 * (thread & 1)
@@ -220,8 +221,8 @@ def gather(
     Args:
         nearest: (h scale, w scale), 0 where nothing was drawn.
         colours: (h scale, w scale, 3).
-        scale: Samples a pixel, each way.
-        body: (h, w, 4) colours times coverage, and coverage; `weight` of this drawing is added.
+        scale: Samples per pixel, each way.
+        body: (h, w, 4) colours times coverage, and coverage; `weight` times this drawing is added.
         weight: Share of the exposure.
         own: (h, w) coverage of this drawing alone, written.
     """
@@ -260,7 +261,7 @@ def expose(
     Args:
         room: (h, w, 3) float32 of the empty room.
         shadow: (h, w) share of the light that arrives.
-        body: (h, w, 4) as `gather` leaves it.
+        body: (h, w, 4) from `gather`.
         gain: Exposure.
         grain: (h, w, 3) noise of a dark pixel, grey levels; bright ones have more.
         out: (h, w, 3) uint8, written.

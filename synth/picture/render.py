@@ -1,4 +1,4 @@
-"""The renderer: a performance in a room, as each camera sees it, with exact silhouettes."""
+"""The renderer: a performance in a room, in each camera's picture, with exact silhouettes."""
 
 from collections.abc import Iterator
 from functools import lru_cache
@@ -21,31 +21,32 @@ from synth.picture.raster import cover, draw, expose, gather, shade, skin
 from synth.picture.synth_room import LIGHT_MAP_PX, Lamp, Room, furnished, lamp_pixels, lit_from
 
 FINE_PX: Final = 480
-"""Samples across a picture: a smaller one averages more samples a pixel."""
+"""Samples across a picture: smaller pictures average more samples per pixel."""
 SHUTTER: Final = 0.4
-"""How long the shutter is open, as a share of the frame period."""
+"""Open time of the shutter, over the frame period."""
 NOISE: Final = 1.7
 """Standard deviation of the sensor's noise in a dark pixel, grey levels."""
 KEY_DARK, FOOT_DARK = 0.2, 0.3
-"""How much of the light the person takes away: from the lamp, and under the feet."""
+"""Share of the light that the person blocks: from the lamp, and under the feet."""
 BLURS_PX: Final = (7, 15)
-"""How soft those two shadows are, in pixels of the lamp's picture."""
+"""Blur of those two shadows, in pixels of the lamp's picture."""
 
 Body = tuple[NDArray[np.float32], Mask]
 """Colours times coverage, and coverage, (h, w, 4); the exact mask (h, w)."""
 
 
 class Shot(NamedTuple):
-    """One moment, as each camera of the rig sees it."""
+    """One moment in each camera of the rig."""
 
     frames: tuple[Image, ...]
-    """(h, w, 3) a camera: blue, green, red."""
+    """(h, w, 3) per camera: blue, green, red."""
     masks: tuple[Mask, ...]
-    """(h, w) a camera: True where the person covers half of a pixel or more at the frame's time."""
+    """(h, w) per camera: True where the person covers half of a pixel or more at the frame's
+    time."""
 
 
 class _Scene(NamedTuple):
-    """What stays the same over a clip."""
+    """The constant part of a clip."""
 
     mesh: Mesh
     palette: NDArray[np.float64]
@@ -59,11 +60,11 @@ def render(someone: Person, motion: Motion, rig: Rig, room_seed: int, seed: int)
     """The frames of a performance.
 
     Args:
-        someone: Who is seen.
-        motion: What they do.
-        rig: The cameras; the room is as large as they need.
-        room_seed: Of the room.
-        seed: Of what differs from take to take: noise, exposure.
+        someone: The performer.
+        motion: Their motion.
+        rig: The cameras; they determine the room's size.
+        room_seed: Seed of the room.
+        seed: Seed of the differences between takes: noise, exposure.
     """
     scale = max(2, round(FINE_PX / rig.width))
     look = someone.look
@@ -152,7 +153,7 @@ def _drawn(
     body: NDArray[np.float32],
     weight: float,
 ) -> tuple[NDArray[np.float32], tuple[slice, slice]]:
-    """Add one drawing to `body`; its coverage, and the box of the picture where it lies."""
+    """Add one drawing to `body`; returns its coverage, and its box in the picture."""
     mesh, scale = scene.mesh, scene.scale
     pixels = project(camera, places)
     depths = places @ np.array(camera.R)[2] + camera.t[2]
@@ -204,14 +205,14 @@ def _darkness(scene: _Scene, places: NDArray[np.float64]) -> list[NDArray[np.flo
 def _lamp_mask(
     mesh: Mesh, lamp: Lamp, places: NDArray[np.float64], blur_px: int
 ) -> NDArray[np.float32]:
-    """What a lamp sees of the person, blurred as its size demands."""
+    """The person in a lamp's picture, blurred by the lamp's size."""
     mask = np.zeros((LIGHT_MAP_PX, LIGHT_MAP_PX), np.uint8)
     cover(lamp_pixels(lamp, places), mesh.faces, mask)
     return cv2.GaussianBlur(mask.astype(np.float32), (blur_px, blur_px), 0)
 
 
 def _nobody(rig: Rig) -> tuple[list[Body], list[NDArray[np.float32]]]:
-    """What stands for body and darkness while the room is empty."""
+    """Values for body and shadow while the room is empty."""
     shape = (rig.height, rig.width)
     body = np.zeros((*shape, 4), np.float32), np.zeros(shape, bool)
     cameras = len(rig.cameras)

@@ -1,7 +1,7 @@
-"""Joints as a network of landmarks shows them in a picture, and how sure it is: without pictures.
+"""Joints with a simulated landmark network's errors and confidence: without pictures.
 
-How far off joints are at each confidence, how long an error stays, how surely joints are seen that
-something hides: all as measured of the shipped network on synthetic people in pictures.
+The constants below are errors by confidence, their duration, and confidence of hidden joints, all
+measured of the packaged network on synthetic people in pictures.
 """
 
 from typing import Final, NamedTuple
@@ -28,14 +28,14 @@ PARTS: Final = (
         )
     ),
 )
-"""What hides joints: from where to where, and how thick, in statures."""
+"""Occluding body parts: both ends, and thickness, in statures."""
 TRUNK: Final = 3
 """Number of body parts that make up the trunk."""
 ENDS: Final = np.array([[JOINT_NAMES.index(end) for end in part[:2]] for part in PARTS])
 THICK: Final = np.array([part[2] for part in PARTS])
 ALONG: Final = np.linspace(0.1, 0.9, 5)[:, None]
 BEFORE: Final = 0.05
-"""How far what hides a joint is before it, in statures."""
+"""Smallest distance of an occluding part before a joint, statures."""
 ON_TRUNK: Final = np.array([name in ("pelvis", "neck", "head_top") for name in JOINT_NAMES])
 ON_ARM: Final = np.array(["elbow" in name or "wrist" in name for name in JOINT_NAMES])
 GIRDLES: Final = [
@@ -46,40 +46,40 @@ LEGS: Final = np.where(
     OTHER_SIDE,
     np.arange(len(JOINT_NAMES)),
 )
-"""The other side's joint where it is a leg's, else the same."""
+"""Index of the other side's joint for legs, else of the same joint."""
 
 SURE: Final = (2.5, 0.6)
-"""Logit of the confidence in a joint that is seen: mean and deviation from person to person."""
+"""Logit of the confidence in a visible joint: mean and deviation between people."""
 SURER_TRUNK, LESS_ARM = 1.0, 0.3
 HIDDEN: Final = (2.4, 0.6)
-"""How much less sure a hidden one is."""
+"""Loss of that for a hidden one."""
 OUTSIDE: Final = -3.0
-"""Of one outside the picture."""
+"""Logit for one outside the picture."""
 JOINT_DEV, MOMENT_DEV, LASTS = 0.3, 0.8, 0.8
-"""Deviations from joint to joint and over time; the share that stays from instant to instant."""
+"""Deviations between joints and over time; the share that persists from instant to instant."""
 OFF: Final = (
     (0.0, 0.05, 0.15, 0.25, 0.35, 0.45, 0.55, 0.65, 0.75, 0.85, 0.95, 1.0),
     (0.16, 0.13, 0.08, 0.05, 0.036, 0.029, 0.025, 0.0195, 0.016, 0.0123, 0.0078, 0.006),
 )
-"""Standard deviation of a joint's error each way, in statures, by the confidence in it."""
+"""Standard deviation of a joint's error each way, in statures, by its confidence."""
 OFF_LASTS, STEADY = 0.75, 0.006
-"""What stays of an error from instant to instant, and what is off all through."""
+"""Share of an error that persists from instant to instant, and the constant part."""
 DOUBTED, ASTRAY = 0.8, 1.3
-"""A joint that is hidden, or less sure, is for a while taken for the other side's: where a normal
-variable is so large."""
+"""Threshold of a normal variable above which a hidden or unsure joint is exchanged with the
+other side's for a while."""
 FACING: Final = (3.0, 8.0)
-"""Degrees that the facing is off: all through, and over time."""
+"""Error of the facing, degrees: constant, and over time."""
 TURNED, LEGS_EXCHANGED, UNTOLD = 0.06, 0.08, 0.1
-"""Shares of the performances in which a person is for a while seen the other way round, only legs
-are exchanged, or the picture hardly tells where a person faces."""
+"""Shares of performances in which, for a while, front and back are exchanged, only the legs are,
+or the facing is unknown."""
 ALL_THROUGH: Final = 0.3
-"""Share of those who are seen the other way round all through."""
+"""Share of the exchanged ones that are so throughout."""
 STRETCH: Final = (5, 40)
-"""Instants that such a while lasts."""
+"""Duration of such a while, instants."""
 
 
 class ShownJoints(NamedTuple):
-    """Of one camera, over time."""
+    """Landmarks of one camera over time."""
 
     joints_px: NDArray[np.float64]
     """(n, 15, 2)"""
@@ -98,14 +98,14 @@ def shown_joints(
     stature_m: float,
     rng: np.random.Generator,
 ) -> ShownJoints:
-    """What one camera shows of a performance.
+    """The landmarks of one camera for a performance.
 
     Args:
-        joints_m: (n, 15, 3) JOINT_NAMES, world, all before the camera.
+        joints_m: (n, 15, 3) JOINT_NAMES, world, all in front of the camera.
         camera: Without distortion.
         size: (width, height) of its picture.
-        stature_m: Of the person.
-        rng: Source of all chance.
+        stature_m: The person's stature.
+        rng: Source of all random values.
     """
     n, known = len(joints_m), arrays_of(camera)
     true_px = project(camera, joints_m.reshape(-1, 3)).reshape(n, -1, 2)
@@ -130,7 +130,7 @@ def shown_joints(
 def _confidence(
     hidden: NDArray[np.bool_], outside: NDArray[np.bool_], rng: np.random.Generator
 ) -> NDArray[np.float64]:
-    """(n, 15) of joints that are hidden, or outside the picture."""
+    """(n, 15) joints that are hidden, or outside the picture."""
     logits = MOMENT_DEV * _lasting(hidden.shape, LASTS, rng)
     logits += SURE[0] + SURE[1] * rng.normal() + JOINT_DEV * rng.normal(size=hidden.shape[1])
     logits += SURER_TRUNK * ON_TRUNK - LESS_ARM * ON_ARM
@@ -139,7 +139,7 @@ def _confidence(
 
 
 def hides(joints_m: NDArray[np.float64], eye_m: Vector, stature_m: float) -> NDArray[np.bool_]:
-    """Which joints, (n, 15), another part of the body hides from an eye (3,)."""
+    """Which joints, (n, 15), another part of the body hides from a camera's place (3,)."""
     sights = joints_m - eye_m
     far_m = np.linalg.norm(sights, axis=2)
     sights = sights / far_m[..., None]
@@ -153,7 +153,7 @@ def hides(joints_m: NDArray[np.float64], eye_m: Vector, stature_m: float) -> NDA
 
 
 def _own_parts() -> NDArray[np.bool_]:
-    """(15, parts) which parts a joint is of, and is not hidden by."""
+    """(15, parts) the parts that a joint belongs to, which do not hide it."""
     own = (ENDS[None] == np.arange(len(JOINT_NAMES))[:, None, None]).any(axis=2)
     own[GIRDLES, :TRUNK] = True
     own[JOINT_NAMES.index("pelvis"), :TRUNK] = own[JOINT_NAMES.index("neck"), :TRUNK] = True
@@ -161,7 +161,7 @@ def _own_parts() -> NDArray[np.bool_]:
 
 
 def _mistaken(shown: ShownJoints, rng: np.random.Generator) -> ShownJoints:
-    """The same with sides taken for each other, and facings that are not told, for a while."""
+    """The same with exchanged sides, and unknown facings, for a while."""
     joints_px, confidence, facing_deg, told = shown
     n = len(joints_px)
     if rng.random() < TURNED:
@@ -181,20 +181,20 @@ def _exchange(
     when: NDArray[np.bool_],
     others: NDArray[np.int_],
 ) -> None:
-    """Show other joints in the place of each, in some instants."""
+    """Replace joints by others in some instants."""
     joints_px[when] = joints_px[when][:, others]
     confidence[when] = confidence[when][:, others]
 
 
 def _while(n: int, rng: np.random.Generator) -> NDArray[np.bool_]:
-    """(n,) a stretch of instants."""
+    """(n,) True in a stretch of instants."""
     when, start = np.zeros(n, np.bool_), int(rng.integers(n))
     when[start : start + int(rng.integers(*STRETCH))] = True
     return when
 
 
 def _yaw_deg(joints_m: NDArray[np.float64], R: NDArray[np.float64]) -> Vector:
-    """Which way shoulders and hips face, (n,): 0 the camera, 90 the right of its picture."""
+    """Direction of shoulders and hips, (n,): 0 the camera, 90 the right of its picture."""
     left, right = joints_m[:, GIRDLES[::2]], joints_m[:, GIRDLES[1::2]]
     ahead = np.cross((left - right).sum(axis=1), [0.0, 1.0, 0.0]) @ R.T
     yaw_deg: Vector = np.degrees(np.arctan2(ahead[:, 0], -ahead[:, 2]))
@@ -202,7 +202,7 @@ def _yaw_deg(joints_m: NDArray[np.float64], R: NDArray[np.float64]) -> Vector:
 
 
 def _lasting(shape: tuple[int, ...], share: float, rng: np.random.Generator) -> NDArray[np.float64]:
-    """Normal variables of which a share stays from each instant (the first axis) to the next."""
+    """Normal variables, correlated along the first axis by the given share."""
     found = rng.normal(size=shape)
     new = np.sqrt(1.0 - share * share)
     for i in range(1, shape[0]):

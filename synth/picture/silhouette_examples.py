@@ -1,4 +1,4 @@
-"""Silhouettes of synthetic people in two cameras, without light, to train a network on."""
+"""Silhouettes of synthetic people in two cameras, without light, as training data."""
 
 from collections.abc import Iterator
 from typing import Final, NamedTuple
@@ -20,32 +20,31 @@ from synth.picture.raster import cover, skin
 
 FPS: Final = 15.0
 PEOPLE: Final = (100_000, 1_000_000)
-"""Numbers of those who are trained on; whoever is made for a test has a lower one."""
+"""Seeds of training people; test people have lower ones."""
 LONGEST: Final = 90
-"""Instants of one performance that are drawn."""
+"""Number of instants of one performance that are drawn."""
 TURNED_SHARE: Final = 0.25
-"""Of the performances: how many postures face anywhere and turn."""
+"""Share of the performances of postures with any heading and turns."""
 OTHER_ARMS: Final = 0.3
 """Share of the performances with the arms of another one."""
 FAST_SHARE: Final = 0.2
 SPEEDS, FAST = (0.7, 1.3), (1.3, 2.3)
 ARM_DEG, REST_DEG = (0.0, 3.0, 8.0, 20.0), (0.0, 2.0, 4.0, 6.0)
-"""Standard deviations that arms, and all else, are turned by; one of them for a performance."""
+"""Standard deviations of constant rotations of arms, and of the rest, per performance."""
 YAW_DEG: Final = (4.0, 4.0, 15.0)
-"""Standard deviations that the whole body is turned by about the vertical, one of them for a
-performance."""
+"""Standard deviation of the whole body's constant yaw, per performance."""
 TURNING_DEG: Final = 180.0
-"""How far a person who turns goes round, to either side."""
+"""Range of a turning person's yaw, to either side."""
 THICKER, LONGER, LOOSER = 0.06, 0.02, (0.5, 2.0)
-"""How bodies differ beyond those of `person`: standard deviations of what a thickness and a length
-are multiplied by, and the range of what the room in their clothes is."""
+"""Further variation of bodies beyond `person`: standard deviations of the factors on thicknesses
+and lengths, and the range of the clothes' looseness."""
 ROOM_M: Final = 0.6
-"""How far from the middle a person stands."""
+"""Range of a person's distance from the middle."""
 JITTER_PX: Final = 0.25
-"""Standard deviation of a silhouette's place."""
+"""Standard deviation of a silhouette's place, pixels."""
 ALONE_SHARE, GAP_SHARE, DROP_SHARE = 0.15, 0.15, 0.03
-"""Of the performances: how many one camera sees alone, or for a while; of the instants: how many
-are missing."""
+"""Shares of the performances with one camera alone, throughout or for a while; share of missing
+instants."""
 
 ARMS: Final = np.array(["_sh_" in name or "elbow" in name for name in ANGLES])
 BENT: Final = [i for i, name in enumerate(ANGLES) if "elbow" in name or "knee" in name]
@@ -57,7 +56,7 @@ LEANS: Final = [
 YAW: Final = ANGLES.index("root_yaw")
 FARTHER: Final = {"hip_abd": 2.0, "torso_roll": 1.6, "root_roll": 5.0, "root_pitch": 2.0}
 WIDER: Final = np.array([FARTHER.get(name.split("_", name[1] == "_")[-1], 1.0) for name in ANGLES])
-"""What the angles of those who go farther are multiplied by."""
+"""Factor on the angles of people who lean and lift farther."""
 
 
 class SilhouetteExample(NamedTuple):
@@ -74,32 +73,32 @@ class SilhouetteExample(NamedTuple):
 
 
 class Manner(NamedTuple):
-    """What kind of performances are made up."""
+    """Kinds of synthetic performances."""
 
     free: float
-    """Share of those that are no posture."""
+    """Share that are no posture."""
     late: float
-    """Share of those that are joined after their opening."""
+    """Share that are joined after their opening."""
     leaning: float
-    """Share of those who lean over with the whole body."""
+    """Share that lean with the whole body."""
     lean_deg: float
-    """Standard deviation of that."""
+    """Standard deviation of that lean."""
     wider: float
-    """Share of those who lean and lift their legs farther aside than people do in a free
-    motion."""
+    """Share that lean and lift their legs farther sideways than people do in free motion."""
     slanted: float
     """Share of the rigs that stand anywhere, look down, are rolled."""
     distances_m: tuple[float, float]
-    """Range of the cameras."""
+    """Range of the cameras' distance."""
 
 
 ORDINARY: Final = Manner(0.3, 0.4, 0.15, 14.0, 0.0, 0.25, (3.4, 5.6))
 AT_LARGE: Final = Manner(0.65, 0.8, 0.3, 20.0, 0.25, 0.4, (2.3, 5.6))
-"""People who move as they like, also close to cameras that stand anywhere."""
+"""Free motion, also close to cameras that stand anywhere."""
 
 
 def silhouette_examples(seed: int, manner: Manner = ORDINARY) -> Iterator[SilhouetteExample]:
-    """The instants of one performance by one person before two cameras; a seed is a performance."""
+    """The instants of one performance by one person before two cameras; each seed is one
+    performance."""
     rng = np.random.default_rng([seed, 77])
     someone = differing(person(int(rng.integers(*PEOPLE))), rng)
     angles = course(someone, manner, rng)
@@ -123,7 +122,7 @@ def silhouette_examples(seed: int, manner: Manner = ORDINARY) -> Iterator[Silhou
 
 
 def differing(someone: Person, rng: np.random.Generator) -> Person:
-    """The same person with other proportions; the stature stays about the same."""
+    """The same person with other proportions and nearly the same stature."""
     measures = {
         name: value
         * (1.0 + rng.normal() * (THICKER if "half" in name or "radius" in name else LONGER))
@@ -138,7 +137,7 @@ def differing(someone: Person, rng: np.random.Generator) -> Person:
 
 
 def course(someone: Person, manner: Manner, rng: np.random.Generator) -> NDArray[np.float64]:
-    """(n, 27) of a performance, made more various."""
+    """(n, 27) angles of a performance with more variation."""
     chance = rng.random()
     name = "free" if chance < manner.free else POSTURES[int(rng.integers(len(POSTURES)))]
     speed = rng.uniform(*(FAST if rng.random() < FAST_SHARE else SPEEDS))
@@ -161,7 +160,7 @@ def course(someone: Person, manner: Manner, rng: np.random.Generator) -> NDArray
 def _others_arms(
     someone: Person, speed: float, n: int, rng: np.random.Generator
 ) -> NDArray[np.float64]:
-    """(n, arms) angles of another movement, to and fro."""
+    """(n, arms) angles of another movement, forwards and backwards."""
     name = POSTURES[int(rng.integers(len(POSTURES)))]
     other = performance(someone, name, int(rng.integers(1_000_000)), FPS / speed)
     theirs = other.angles_deg[other.present][:, ARMS]
@@ -170,7 +169,7 @@ def _others_arms(
 
 
 def _swaying(t: Vector, manner: Manner, rng: np.random.Generator) -> NDArray[np.float64]:
-    """(n, 27) to add: each joint is held otherwise, and wanders."""
+    """(n, 27) to add: each joint gets an offset and a drift."""
     spread = np.where(ARMS, rng.choice(ARM_DEG), rng.choice(REST_DEG))
     spread[ROOT], spread[FEET], spread[YAW] = np.minimum(spread[ROOT], REST_DEG[2]), 0.0, 0.0
     if rng.random() < manner.leaning:
@@ -181,7 +180,7 @@ def _swaying(t: Vector, manner: Manner, rng: np.random.Generator) -> NDArray[np.
 
 
 def _yaw(t: Vector, turning: bool, rng: np.random.Generator) -> Vector:
-    """Degrees about the vertical."""
+    """Yaw, degrees."""
     if not turning:
         waves = np.sin(2 * np.pi * (t * rng.uniform(0.1, 0.6) + rng.random()))
         return np.asarray(rng.choice(YAW_DEG) * (rng.normal() + 0.4 * rng.normal() * waves))
@@ -192,7 +191,7 @@ def _yaw(t: Vector, turning: bool, rng: np.random.Generator) -> Vector:
 
 
 def _present(n: int, rng: np.random.Generator) -> NDArray[np.bool_]:
-    """(n, 2) which cameras see each instant; always one."""
+    """(n, 2) which cameras see each instant; at least one does."""
     present, chance = np.ones((n, 2), np.bool_), rng.random()
     which = int(rng.integers(2))
     if chance < ALONE_SHARE:
@@ -211,7 +210,7 @@ def _seen(
     flaws: tuple[Flaw, Flaw],
     rng: np.random.Generator,
 ) -> list[Mask]:
-    """Both silhouettes of an instant, as they are cut out of a video."""
+    """Both silhouettes of an instant, with the flaws of segmented ones."""
     masks = []
     for camera, wrong in zip(rig.cameras, flaws, strict=True):
         jitter_px = rng.normal(0.0, JITTER_PX, 2)
@@ -231,10 +230,10 @@ def exact_mask(
 
     Args:
         mesh: At rest.
-        bones: Where they are, (bones, 3, 4).
-        camera: Who looks.
+        bones: Their frames, (bones, 3, 4).
+        camera: The camera.
         size: (width, height) of the picture.
-        jitter_px: How far beside its place it is seen, (2,).
+        jitter_px: Displacement of the silhouette, (2,).
     """
     places = np.empty_like(mesh.vertices_m)
     skin(mesh.vertices_m, mesh.origins_m, mesh.bones, mesh.shares, bones, places)

@@ -1,4 +1,4 @@
-"""A furnished room of a seed, as each camera sees it, and where its lamp throws shadows."""
+"""A random furnished room in each camera's picture, and the shadows of its lamps."""
 
 import math
 from typing import Final, NamedTuple
@@ -14,30 +14,31 @@ from synth.picture.textures import Finish, finish, painted
 Picture = NDArray[np.float32]
 
 LIGHT_MAP_PX: Final = 128
-"""Size of the picture that a lamp "sees" of the person: 4 cm a pixel, shadows are soft anyway."""
+"""Size of a lamp's picture of the person: 4 cm per pixel, as shadows are soft anyway."""
 LIGHT_REACH_M: Final = 2.3
-"""How far from the middle of the room the lamps' pictures reach."""
+"""Extent of the lamps' pictures around the middle of the room."""
 MIDDLE_M: Final = (0.0, 0.9, 0.0)
 OVERHEAD_M: Final = 2.3
-"""What is higher gets no shadow: the ceiling is not behind any person."""
+"""Height above which nothing gets a shadow: the ceiling is behind no person."""
 BESIDE_M: Final = 1.0
-"""What is not that far ahead of a lamp gets no shadow: it is beside or behind it."""
+"""Smallest distance ahead of a lamp at which there is a shadow."""
 SELF_SHADE: Final = 0.01
-"""Share of the way to the lamp within which a box hides no lamp from a point: it may lie on it."""
+"""Share of the way to the lamp within which a box casts no shadow on a point: the point may lie
+on it."""
 LAMP_SPREAD_M: Final = 0.25
-"""Half the size of the lamp: what stands in the room throws soft shadows, too."""
+"""Half the size of the lamp: furniture casts soft shadows too."""
 BEHIND_M: Final = 0.6
-"""Of the room behind each camera."""
+"""Depth of the room behind each camera."""
 FURNISHED_M: Final = (-1.9, 1.7)
-"""Along the walls behind the person: where things begin."""
+"""Range of the first object's place along a wall."""
 WIDEST_M: Final = 0.9
-"""Of a thing that stands along a wall."""
+"""Range of an object's width along a wall."""
 SAMPLES: Final = 2
-"""Rays a pixel, each way."""
+"""Rays per pixel, each way."""
 
 
 class Cuboid(NamedTuple):
-    """A thing in the room: a box along the axes with one finish."""
+    """An object in the room: an axis-aligned box with one finish."""
 
     low: Vector
     high: Vector
@@ -45,16 +46,16 @@ class Cuboid(NamedTuple):
 
 
 class Wall(NamedTuple):
-    """A wall, and the part of it that things stand along."""
+    """A wall, and the stretch of it for objects."""
 
     axis: int
-    """Across which it stands: 0 for x, 2 for z."""
+    """Axis of its normal: 0 for x, 2 for z."""
     at_m: float
     inwards: float
-    """Sign of that axis' way into the room."""
+    """Sign of the normal into the room."""
     from_m: float
     to_m: float
-    """Along the other axis: where things begin."""
+    """Start of the objects along the other axis."""
 
 
 class Lamp(NamedTuple):
@@ -67,14 +68,14 @@ class Lamp(NamedTuple):
 
 
 class Room(NamedTuple):
-    """What each camera sees of an empty room."""
+    """An empty room in each camera's picture."""
 
     pictures: tuple[Picture, ...]
-    """(h, w, 3) a camera, 0-255."""
+    """(h, w, 3) per camera, 0-255."""
     lamps: tuple[Lamp, ...]
     """The key light, and the ceiling, whose shadow lies under the feet."""
     shadows_px: tuple[tuple[NDArray[np.float32], ...], ...]
-    """[camera][lamp]: (h, w, 2) where in the lamp's picture a pixel's point lies."""
+    """[camera][lamp]: (h, w, 2) place of a pixel's point in the lamp's picture."""
 
 
 def furnished(seed: int, rig: Rig) -> Room:
@@ -93,7 +94,7 @@ def furnished(seed: int, rig: Rig) -> Room:
 
 
 def _shadow_map(lamp: Lamp, points_m: NDArray[np.float64]) -> NDArray[np.float32]:
-    """Where in the lamp's picture the points (h, w, 3) lie; outside for high ones."""
+    """Places in the lamp's picture of the points (h, w, 3); outside for high ones."""
     pixels = lamp_pixels(lamp, points_m)
     ahead = (points_m - lamp.place_m) @ lamp.rotation[2]
     pixels[(points_m[..., 1] > OVERHEAD_M) | (ahead < BESIDE_M)] = -LIGHT_MAP_PX
@@ -101,7 +102,7 @@ def _shadow_map(lamp: Lamp, points_m: NDArray[np.float64]) -> NDArray[np.float32
 
 
 def lamp_pixels(lamp: Lamp, points_m: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Where points (..., 3) lie in a lamp's picture; outside of it what is beside the lamp."""
+    """Places of points (..., 3) in a lamp's picture; outside of it for those beside the lamp."""
     seen = (points_m - lamp.place_m) @ lamp.rotation.T
     pixels: NDArray[np.float64] = seen[..., :2] / np.maximum(seen[..., 2:], 0.1) * lamp.focal_px
     return pixels + LIGHT_MAP_PX / 2
@@ -118,7 +119,7 @@ def _lamp(place: Vector) -> Lamp:
 
 
 def _walls(rng: np.random.Generator, rig: Rig) -> list[Cuboid]:
-    """The room itself, first of all boxes: it is seen from inside, all cameras are in it."""
+    """The room itself, the first box: it is seen from inside, and contains all cameras."""
     places = np.stack([centre(camera) for camera in rig.cameras])
     far = max(5.0, float(np.abs(places).max())) + BEHIND_M
     low = np.array([-far, 0.0, -rng.uniform(1.5, 2.5)])
@@ -129,7 +130,8 @@ def _walls(rng: np.random.Generator, rig: Rig) -> list[Cuboid]:
 
 
 def _walls_seen(room: Cuboid, cameras: int) -> list[Wall]:
-    """The back and the person's left, before which two cameras see them; the others if more do."""
+    """The walls at the back and at the person's left, which two cameras see; the others with
+    more cameras."""
     low, high, last = room.low.tolist(), room.high.tolist(), (room.high - WIDEST_M).tolist()
     walls = [Wall(2, low[2], 1.0, *FURNISHED_M), Wall(0, high[0], -1.0, *FURNISHED_M)]
     if cameras > 2:
@@ -138,7 +140,7 @@ def _walls_seen(room: Cuboid, cameras: int) -> list[Wall]:
 
 
 def _furniture(rng: np.random.Generator, walls: list[Wall]) -> list[Cuboid]:
-    """Things along the walls."""
+    """Objects along the walls."""
     boxes = []
     for wall in walls:
         along = wall.from_m
@@ -158,7 +160,7 @@ _HEIGHTS: Final = {
     "curtain": (0.1, 0.4, 1.6, 2.0, 0.05),
     "door": (0.0, 0.0, 1.9, 2.05, 0.04),
 }
-"""Lower edge from, to; upper edge from, to; depth: metres."""
+"""Ranges of the lower edge, of the upper edge, and of the depth: metres."""
 
 
 def _against(rng: np.random.Generator, kind: str, along: float, wide: float, wall: Wall) -> Cuboid:
@@ -172,7 +174,7 @@ def _against(rng: np.random.Generator, kind: str, along: float, wide: float, wal
 def _seen(
     rig: Rig, n: int, boxes: list[Cuboid], key: Vector, rng: np.random.Generator
 ) -> tuple[Picture, NDArray[np.float64]]:
-    """The picture (h, w, 3) and the point of the room in each pixel (h, w, 3)."""
+    """The picture (h, w, 3) and the room's point in each pixel (h, w, 3)."""
     camera, size = rig.cameras[n], (rig.height * SAMPLES, rig.width * SAMPLES)
     rays = _rays(camera, size)
     origin = centre(camera)
@@ -207,7 +209,7 @@ def _rays(camera: Camera, size: tuple[int, int]) -> NDArray[np.float64]:
 
 
 def _leaving(origin: Vector, rays: NDArray[np.float64], box: Cuboid) -> Vector:
-    """How far along each ray the room ends."""
+    """Distance along each ray to the room's walls."""
     with np.errstate(divide="ignore"):
         ends = np.maximum((box.low - origin) / rays, (box.high - origin) / rays)
     found: Vector = ends.min(axis=1)
@@ -217,13 +219,13 @@ def _leaving(origin: Vector, rays: NDArray[np.float64], box: Cuboid) -> Vector:
 def _entering(
     origins: Vector, rays: NDArray[np.float64], box: Cuboid, least: float = 0.0
 ) -> Vector:
-    """How far along each ray a box begins; infinite where it is missed.
+    """Distance along each ray to a box; infinite where it misses.
 
     Args:
-        origins: Where the rays start: one place (3,), or one for each (n, 3).
+        origins: Starts of the rays: one place (3,), or one each (n, 3).
         rays: (n, 3).
-        box: What they may meet.
-        least: A box that begins nearer than this is no hit: a point on it does not shade itself.
+        box: The box.
+        least: Smallest distance of a hit: a point on a box does not shade itself.
     """
     with np.errstate(divide="ignore", invalid="ignore"):
         first, second = (box.low - origins) / rays, (box.high - origins) / rays

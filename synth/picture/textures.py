@@ -1,4 +1,4 @@
-"""What walls, floors and furniture are covered with: colours from places."""
+"""Textures of walls, floors and furniture: colours by place."""
 
 from typing import Final, NamedTuple
 
@@ -11,7 +11,7 @@ Colours = NDArray[np.float64]
 
 
 class Finish(NamedTuple):
-    """How a thing looks; which colours mean what depends on the kind."""
+    """A finish; the meaning of its colours depends on the kind."""
 
     kind: str
     walls: str
@@ -21,7 +21,7 @@ class Finish(NamedTuple):
     third: Vector
     pitch_m: float
     salt: float
-    """Makes the grain of this thing its own."""
+    """Seed of this object's grain."""
 
 
 WALLS: Final = ("plaster", "stripes", "bricks", "panels")
@@ -29,7 +29,7 @@ FLOORS: Final = ("boards", "tiles", "carpet")
 
 
 def finish(kind: str, rng: np.random.Generator) -> Finish:
-    """A random finish for a kind of thing: room, shelf, chest, picture, curtain or door."""
+    """A random finish for a kind of object: room, shelf, chest, picture, curtain or door."""
     strong = kind in ("curtain", "picture", "shelf", "chest")
     tints = [_tint(rng, 0.55 if strong else 0.18) for _ in range(3)]
     if kind == "room":
@@ -146,7 +146,7 @@ def _tint(rng: np.random.Generator, strength: float) -> Vector:
 
 
 def _hash(a: Vector, b: Vector, salt: float) -> Vector:
-    """A number from 0 to 1 that looks random, the same for the same whole numbers."""
+    """A pseudo-random number in [0, 1] from whole numbers."""
     wild = np.sin(np.floor(a) * 12.9898 + np.floor(b) * 78.233 + salt) * 43758.5453
     found: Vector = wild - np.floor(wild)
     return found
