@@ -12,6 +12,7 @@ from common.bus.rate import Pace
 from common.config.settings import Settings
 from common.method import METHODS
 from common.video.clip_facts import Clip, uprights_of
+from common.video.pictures import is_camera
 from integrator import commands, diagnostics, merge, merge_state
 from integrator.frame_numbers import frame_times
 from integrator.handed_over import Estate
@@ -128,6 +129,6 @@ def main(settings: Settings, clip: Clip, context: ProcessContext = ProcessContex
 
 def page_wait_s(settings: Settings, clip: Clip, context: ProcessContext) -> float:
     """How long a run waits for somebody to open its page: a camera waits for nobody."""
-    recorded = not any(isinstance(view.source, int) for view in clip.views)
+    recorded = not any(is_camera(view.source) for view in clip.views)
     waits = context.supervised and settings.page.port and settings.page.wait and recorded
     return PAGE_S if waits else 0.0

@@ -8,6 +8,7 @@ import msgspec
 import numpy as np
 
 from common.video.clip_facts import Clip
+from common.video.pictures import is_camera
 
 NO_FRAME: Final = -1
 """Number of an instant at which camera 1 took no frame."""
@@ -33,9 +34,7 @@ def frame_times(clip: Clip) -> FrameTimes | None:
         return None
     if view.picked:
         return FrameTimes(float(np.median(np.diff(view.capture_s))), captured_s=view.capture_s)
-    return FrameTimes(
-        clip.every / view.fps, clip.every, isinstance(view.source, int), view.capture_s
-    )
+    return FrameTimes(clip.every / view.fps, clip.every, is_camera(view.source), view.capture_s)
 
 
 def frame_at(times: FrameTimes, captured_s: float, before: int, before_s: float | None) -> int:

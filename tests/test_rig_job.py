@@ -13,7 +13,16 @@ from calibration.person import person_calibration
 from calibration.tracks.joint_tracks import JOINTS, Row
 from common.rig.camera import paper_rig
 from common.rig.rig_file import CalibrationError
-from integrator.live_rig.rig_job import Job, Stand, packed, solved, track_of_bytes
+from integrator.live_rig.rig_job import (
+    TOO_LITTLE,
+    Job,
+    Solved,
+    Stand,
+    Unsolved,
+    packed,
+    solved,
+    track_of_bytes,
+)
 
 FOUND = paper_rig((160, 120), (210.0, 190.0), (3.0, 5.0))
 
@@ -82,12 +91,12 @@ def test_a_rig_is_found_by_the_person_and_judged_beside_that_in_use(
     asked: Asked, before: Any
 ) -> None:
     found = solved(msgspec.structs.replace(JOB, rig=before))
+    assert isinstance(found, Solved)
     ((((sighting,), stature_m)),) = asked.calls
     assert stature_m == 1.7
     assert sighting.first.times_s.tolist() == [1.0, 2.0]
     assert sighting.second.times_s.tolist() == [11.0]
     assert (found.rig, found.late_s, found.gap_mm, found.turn_error_deg) == (FOUND, 0.2, 5.0, 2.0)
-    assert found.trust is not None
     assert found.trust.apart_mm == 20.0
     assert found.trust.odd == ("far",)
     assert (found.before is None) == (before is None)
@@ -97,11 +106,17 @@ def test_a_rig_is_found_by_the_person_and_judged_beside_that_in_use(
 
 def test_what_cannot_be_found_is_refused_in_words(asked: Asked) -> None:
     asked.refusal = "nobody walked"
-    assert solved(JOB).refusal == "nobody walked"
+    assert solved(JOB) == Unsolved("nobody walked")
     asked.placed = None
-    moved = msgspec.structs.replace(JOB, rig=RIG, moved=(2,))
-    assert solved(moved).refusal
-    assert solved(moved).rig is None
+    assert solved(msgspec.structs.replace(JOB, rig=RIG, moved=(2,))) == TOO_LITTLE
+
+
+@pytest.mark.parametrize("moved", [(), (2,)], ids=["found", "placed"])
+def test_a_rig_that_too_little_is_seen_of_to_be_judged_is_none(
+    asked: Asked, monkeypatch: pytest.MonkeyPatch, moved: Any
+) -> None:
+    monkeypatch.setattr(rig_trust, "trust_of", lambda *_: None)
+    assert solved(msgspec.structs.replace(JOB, rig=RIG, moved=moved)) == TOO_LITTLE
 
 
 @pytest.mark.parametrize("stood", [False, True])
@@ -110,6 +125,7 @@ def test_a_camera_that_was_moved_is_placed_by_what_was_seen_before_and_since(
 ) -> None:
     stand = Stand(FOUND, (rows(3.0), rows(4.0, 5.0))) if stood else None
     found = solved(msgspec.structs.replace(JOB, rig=RIG, moved=(2,), late_s=0.1, stood=stand))
+    assert isinstance(found, Solved)
     ((rig, sighting, moved, late_s, before),) = asked.calls
     assert (rig, moved, late_s) == (RIG, (2,), 0.1)
     assert sighting.first.times_s.tolist() == [1.0, 2.0]
@@ -120,10 +136,11 @@ def test_a_camera_that_was_moved_is_placed_by_what_was_seen_before_and_since(
         assert before.sighting.second.times_s.tolist() == [4.0, 5.0]
         assert before.sighting.size_px == (160, 120)
     assert (found.rig, found.late_s, found.gap_mm, found.turn_error_deg) == (FOUND, 0.1, 7.0, 3.0)
-    assert found.trust is not None
     assert found.before is not None
     assert (found.trust.apart_mm, found.before.apart_mm) == (20.0, 40.0)
 
 
 def test_cameras_of_an_assumed_rig_that_were_moved_are_found_anew(asked: Asked) -> None:
-    assert solved(msgspec.structs.replace(JOB, moved=(1,))).gap_mm == 5.0
+    found = solved(msgspec.structs.replace(JOB, moved=(1,)))
+    assert isinstance(found, Solved)
+    assert found.gap_mm == 5.0

@@ -22,7 +22,7 @@ from common.video.clip_facts import ClipView, shortfall
 from common.video.clip_sources import footage_of
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
-from common.video.pictures import DecoderDied, Undecodable
+from common.video.pictures import DecoderDied, Undecodable, is_camera, is_recorded
 from common.video.reduction import jpeg_of
 from viewer import track
 from viewer.background.background import Background
@@ -156,7 +156,7 @@ def run(prepared: Prepared, live: Live, bus: Bus, stop: threading.Event) -> None
 
 def _before(background: Background, state: track.State, prepared: Prepared) -> track.State:
     """The state with a newly learnt background; a camera's is saved."""
-    if prepared.kept is not None and isinstance(prepared.view.source, int):
+    if prepared.kept is not None and is_camera(prepared.view.source):
         keep(prepared.kept, prepared.view, background)
     return track.with_background(state, background)
 
@@ -228,7 +228,7 @@ def _empty_frames(state: track.State, view: ClipView) -> int:
 def _beside_the_other(view: ClipView, settings: Settings, decoder: Decoder) -> ClipView:
     """The view at the shared frame rate, where the other's video is on this host too."""
     named = footage_of(settings)
-    here = [isinstance(each.source, str) and Path(each.source).is_file() for each in named]
+    here = [is_recorded(each.source) and Path(each.source).is_file() for each in named]
     if len(named) < 2 or not all(here):
         return view
     return next(each for each in open_clip(settings, decoder).views if each.number == view.number)

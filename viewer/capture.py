@@ -11,7 +11,7 @@ from common.bus.mailbox import Mailbox
 from common.bus.rate import Clock, wait_until
 from common.video.clip_facts import ClipView
 from common.video.decoding import Decoder
-from common.video.pictures import CameraLost, Decoded, Ending, Reader, Wanted
+from common.video.pictures import CameraLost, Decoded, Ending, Reader, Wanted, is_camera
 from viewer.captured_frame import CapturedFrame
 from viewer.landmarks.outside_source import OutsideSource
 
@@ -163,7 +163,7 @@ class Live:
                     self._missed += 1
                 else:
                     self._waiting.put(self._with_landmarks(frame, decoded))
-            if isinstance(view.source, int):
+            if is_camera(view.source):
                 raise CameraLost(view.source, self._decoder.ending.frames)
         except Exception as error:  # The reader raises whatever ended this thread,
             self._failure = None if self._stop.is_set() else error  # unless it has left.
@@ -179,7 +179,7 @@ class Live:
         return msgspec.structs.replace(frame, landmarks=people)
 
     def _timed(self, decoded: Decoded) -> CapturedFrame:
-        if isinstance(self._view.source, int):
+        if is_camera(self._view.source):
             now_s = decoded.grabbed_s + self._room.offset_s
             index = self._counted_from(now_s) + decoded.index
             captured_s, upright = now_s - self._view.late_s, self._view.upright

@@ -7,7 +7,7 @@ from typing import Final, NamedTuple
 from common.bus.messages import MOST_VIEWS, ViewerNumber
 from common.config.part_settings import CameraSettings
 from common.config.settings import Settings
-from common.video.pictures import Source
+from common.video.pictures import Source, is_recorded
 
 COMPANIONS: Final = {".json", ".npz", ".txt", ".csv", ".toml", ".md", ".png", ".jpg", ".jpeg"}
 """Suffixes of files that may stand beside `cam1.*` and are no videos."""
@@ -129,5 +129,5 @@ def companions_folder(settings: Settings, named: list[Footage]) -> Path:
     """The folder for files that belong to the videos."""
     if settings.clip:
         return Path(settings.clip)
-    files = [Path(view.source) for view in named if isinstance(view.source, str)]
+    files = [Path(view.source) for view in named if is_recorded(view.source)]
     return files[0].parent if files else Path()

@@ -20,7 +20,7 @@ from common.video.clip_facts import Clip, ClipView, Meta
 from common.video.clip_sources import NOTHING, ClipError, Footage, companions_folder, footage_of
 from common.video.decoding import Decoder
 from common.video.frame_times import timed
-from common.video.pictures import DecoderDied, Source, Undecodable, VideoInfo
+from common.video.pictures import DecoderDied, Source, Undecodable, VideoInfo, is_recorded
 from common.video.shared_rate import at_one_rate
 from common.video.upright_views import filed_rig, upright_views
 from common.video.view_pair import refuse_missing, refuse_same_source
@@ -128,7 +128,7 @@ def _view(named: Footage, settings: Settings, meta: Meta, decoder: Decoder) -> C
     info = timed(probed(named.source, decoder))
     if named.settings.background:
         _refuse_another_scene(named, probed(named.settings.background, decoder), info)
-    of_a_file = isinstance(named.source, str)
+    of_a_file = is_recorded(named.source)
     told_hz = settings.fps or meta.fps
     fps = (told_hz or info.fps) if of_a_file else (info.fps or CAMERA_HZ)
     if fps <= 0 and info.frames == 1:
@@ -152,7 +152,7 @@ def _view(named: Footage, settings: Settings, meta: Meta, decoder: Decoder) -> C
 
 def _told_s(meta: Meta, named: Footage) -> tuple[float, ...]:
     """Capture times of a file's frames, from the files beside it."""
-    return meta.capture_s.get(named.name, ()) if isinstance(named.source, str) else ()
+    return meta.capture_s.get(named.name, ()) if is_recorded(named.source) else ()
 
 
 def probed(source: Source, decoder: Decoder) -> VideoInfo:
@@ -161,13 +161,13 @@ def probed(source: Source, decoder: Decoder) -> VideoInfo:
     Raises:
         ClipError: When it does not exist, cannot be read, is empty, or has no picture.
     """
-    if isinstance(source, str):
+    if is_recorded(source):
         refuse_unreadable(Path(source))
     try:
         info = decoder.probe(source)
     except (Undecodable, DecoderDied) as error:
         raise ClipError(str(error)) from error
-    if isinstance(source, str):
+    if is_recorded(source):
         _refuse_a_lost_head(Path(source))
     return info
 

@@ -24,7 +24,7 @@ from common.video.decoding import (
     TIMES,
     TIMES_AT_ONCE,
 )
-from common.video.pictures import Image, Source, cure, named
+from common.video.pictures import Image, Source, cure, is_recorded, named
 from common.video.reduction import reduced
 
 SIGN_OF_LIFE: Final = 100
@@ -103,7 +103,7 @@ def serve(request: dict[str, Any], answers: Answers, complaints: Complaints) -> 
 def say_times(source: Source, answers: Answers) -> None:
     """Send the presentation time of each packet of a file, seconds; none for a camera or a
     picture."""
-    if not isinstance(source, str) or cv2.haveImageReader(source):
+    if not is_recorded(source) or cv2.haveImageReader(source):
         return
     packets = cv2.VideoCapture(source, cv2.CAP_FFMPEG, [cv2.CAP_PROP_FORMAT, -1])
     going = True
@@ -124,12 +124,12 @@ def opened(source: Source, every: int, start: int, complaints: Complaints) -> Op
         start: ... and only the very first one and those from this index on.
         complaints: FFmpeg's messages about it.
     """
-    if isinstance(source, str) and cv2.haveImageReader(source) and cv2.imcount(source) == 1:
+    if is_recorded(source) and cv2.haveImageReader(source) and cv2.imcount(source) == 1:
         return OpenFilm(0.0, 1, iter([Grabbed(0, time.monotonic(), cv2.imread(source))]))
     capture = cv2.VideoCapture(source)
     fps, frames = capture.get(cv2.CAP_PROP_FPS), capture.get(cv2.CAP_PROP_FRAME_COUNT)
     taken = grabs(capture, every, start)
-    if isinstance(source, str):
+    if is_recorded(source):
         taken = judged(taken, source, complaints)
     return OpenFilm(max(0.0, fps), max(0, round(frames)), taken)
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Final, NamedTuple, Protocol
+from typing import Final, NamedTuple, Protocol, TypeGuard
 
 import msgspec
 import numpy as np
@@ -16,6 +16,17 @@ Image = NDArray[np.uint8]
 
 Source = str | int
 """A file, or the index of a camera of this host."""
+
+
+def is_camera(source: Source) -> TypeGuard[int]:
+    """Whether a source is a camera of this host: live, without an end."""
+    return isinstance(source, int)
+
+
+def is_recorded(source: Source) -> TypeGuard[str]:
+    """Whether a source is a file: its frames are the same each time."""
+    return isinstance(source, str)
+
 
 Size = tuple[int, int]
 """Width and height, pixels."""
@@ -116,12 +127,12 @@ class Reader(Protocol):
 
 def named(source: Source) -> str:
     """The name of a source in messages."""
-    return f"camera {source}" if isinstance(source, int) else source
+    return source if is_recorded(source) else f"camera {source}"
 
 
 def cure(source: Source) -> str:
     """The cure for a source that cannot be read."""
-    if isinstance(source, int):
+    if not is_recorded(source):
         return "see that it is plugged in and that no other program holds it"
     if Path(source).suffix.lower() in STILLS:
         return "save the picture anew, as PNG or JPEG"

@@ -9,7 +9,7 @@ from typing import Final
 from common.bus.messages import ViewerNumber
 from common.config.settings import Settings
 from common.video.clip_sources import COMPANIONS, ClipError, Footage
-from common.video.pictures import Source
+from common.video.pictures import Source, is_recorded
 
 WITHOUT: Final = (
     "to track {without} add --views {views}, or name {videos} in settings (cameras.{name}.source) "
@@ -43,12 +43,12 @@ def refuse_missing(
 
 
 def _is_of_the_folder(one: Footage, settings: Settings) -> bool:
-    return bool(settings.clip) and isinstance(one.source, str) and not one.settings.source
+    return bool(settings.clip) and is_recorded(one.source) and not one.settings.source
 
 
 def _without(settings: Settings, found: Sequence[Footage], missing: ViewerNumber) -> str:
     """What a folder lacks, and the cures."""
-    videos = [Path(each.source).name for each in found if isinstance(each.source, str)]
+    videos = [Path(each.source).name for each in found if is_recorded(each.source)]
     likely = _likely(Path(settings.clip), videos, missing)
     cure = f"rename {likely} to cam{missing}{Path(likely).suffix}" if likely else "add it"
     without = WITHOUT.format(
@@ -78,7 +78,7 @@ def refuse_same_source(named: list[Footage]) -> None:
     """
     for first, second in combinations(named, 2):
         if _is_same(first.source, second.source):
-            what = "two videos" if isinstance(first.source, str) else "two cameras"
+            what = "two videos" if is_recorded(first.source) else "two cameras"
             raise ClipError(
                 f"views {first.number} and {second.number} are the same: {first.source} and "
                 f"{second.source}; name {what}, or add --views 1"
@@ -86,6 +86,6 @@ def refuse_same_source(named: list[Footage]) -> None:
 
 
 def _is_same(first: Source, second: Source) -> bool:
-    if isinstance(first, int) or isinstance(second, int):
-        return first == second
-    return filecmp.cmp(first, second, shallow=False)
+    if is_recorded(first) and is_recorded(second):
+        return filecmp.cmp(first, second, shallow=False)
+    return first == second

@@ -9,7 +9,7 @@ from common.method import METHODS
 from common.video.clip_facts import Clip
 from integrator import diagnostics
 from integrator.live_rig import rig_change, rig_search, seen_lately
-from integrator.live_rig.rig_job import Job, Solved
+from integrator.live_rig.rig_job import Job, Solution
 from integrator.live_rig.rig_solver import RigSolver
 from integrator.merge_state import State
 
@@ -22,7 +22,7 @@ class Solver(Protocol):
     def ask(self, job: Job) -> None:
         """Begin a job."""
 
-    def answer(self) -> Solved | None:
+    def answer(self) -> Solution | None:
         """The result, if it is there by now."""
 
     def close(self) -> None:

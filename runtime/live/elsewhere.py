@@ -8,7 +8,7 @@ from common.video.clip_facts import Clip, whole_rig
 from common.video.clip_sources import ClipError, companions_folder, footage_of
 from common.video.clips import find_calibration, open_clip
 from common.video.decoding import Decoder
-from common.video.pictures import Source, VideoInfo
+from common.video.pictures import Source, VideoInfo, is_camera
 
 
 class Unopened(Decoder):
@@ -21,7 +21,7 @@ class Unopened(Decoder):
 
     def probe(self, source: Source) -> VideoInfo:
         """The facts of a source; a file is opened, as usual."""
-        return self._camera if isinstance(source, int) else super().probe(source)
+        return self._camera if is_camera(source) else super().probe(source)
 
 
 def two_camera_clip(settings: Settings) -> Clip:

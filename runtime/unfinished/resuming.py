@@ -12,7 +12,7 @@ from common.config.part_settings import SettingsError
 from common.config.settings import Settings
 from common.npz_file import Facts
 from common.video.clip_sources import ClipError, footage_of
-from common.video.pictures import DecoderDied, Undecodable
+from common.video.pictures import DecoderDied, Undecodable, is_recorded
 from runtime.store import journal
 from runtime.store.runs import RunError
 from runtime.terminal import say, warn
@@ -117,5 +117,5 @@ def resumable(wanted: Wanted, console: Console) -> Iterator[Begun]:
 
 def _lasts(settings: Settings) -> bool:
     """Whether a second look would give the same result."""
-    of_files = all(isinstance(view.source, str) for view in footage_of(settings))
+    of_files = all(is_recorded(view.source) for view in footage_of(settings))
     return of_files and settings.landmarks != "mediapipe"

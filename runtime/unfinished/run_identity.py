@@ -14,6 +14,7 @@ from common.packages import PACKAGES, ROOT
 from common.source_digest import add, digest_of
 from common.video.clip_sources import ClipError, companions_folder, footage_of
 from common.video.clips import find_calibration
+from common.video.pictures import is_recorded
 
 Identity = dict[str, str]
 """A digest of everything that a run depends on, by its name in messages."""
@@ -75,7 +76,7 @@ def files_of(settings: Settings) -> Iterator[Path]:
     """All files read of a clip, in a fixed order."""
     named = footage_of(settings)
     for view in named:
-        if isinstance(view.source, int):
+        if not is_recorded(view.source):
             raise ClipError(f"camera {view.source} is no recorded clip: name a clip folder")
         yield Path(view.source)
         if view.settings.background:

@@ -18,7 +18,7 @@ from common.config.settings import Settings
 from common.video.clip_sources import NOTHING, ClipError, Footage, footage_of
 from common.video.clips import SAME_ASPECT, probed
 from common.video.decoding import Decoder
-from common.video.pictures import Decoded, DecoderDied, Image, Size, Source, Wanted
+from common.video.pictures import Decoded, DecoderDied, Image, Size, Source, Wanted, is_camera
 from runtime.terminal import bar
 
 MOST_STILLS: Final = 100
@@ -134,7 +134,7 @@ def open_album(settings: Settings, console: Console) -> Iterator[Album]:
         views: dict[int, Film | Running] = {}
         for view in footage:
             decoder, frames = decoders[view.number], infos[view.number].frames
-            if isinstance(view.source, int):
+            if is_camera(view.source):
                 running = Running(decoder, view.source, size)
                 doors.callback(running.close)
                 views[view.number] = running
