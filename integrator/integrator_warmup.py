@@ -9,8 +9,8 @@ from common.body.body import JOINT_NAMES, POSE_INDEX, rest_pose
 from common.body.kinematics import joints
 from common.body.observation import Landmarks
 from common.body.proportions import body_vector, thesis_bdp
-from common.bus.instant import Instant
-from common.bus.messages import View, ViewerNumber
+from common.bus.instant import instant_of
+from common.bus.messages import View, ViewerNumber, place_in_rig
 from common.config.settings import Settings
 from common.method import METHODS
 from common.raster.kernel import draw_body, view_of
@@ -34,17 +34,18 @@ def warm_up(settings: Settings, size: tuple[int, int]) -> None:
     for rig in (known, None):
         state = merge_state.init(rig, 1.0, settings, METHODS[settings.mode])
         for index in range(4):
-            first, second = (_view(viewer, index, size, known) for viewer in VIEWERS)
-            state, _, _ = merge.step(state, Instant((first, second if index < 3 else None)))
+            shown = VIEWERS if index < 3 else VIEWERS[:1]
+            views = {viewer: _view(viewer, index, size, known) for viewer in shown}
+            state, _, _ = merge.step(state, instant_of(views, len(VIEWERS)))
     _clear(known, [_view(viewer, 0, size, known) for viewer in VIEWERS])
 
 
 def _clear(rig: Rig, views: Sequence[View]) -> None:
     """Clear silhouettes, one of them with clutter."""
-    first, second = (person for view in views for person in view.people)
-    clutter = unpack(first)
+    person, other = (person for view in views for person in view.people)
+    clutter = unpack(person)
     clutter[: len(clutter) // 20, : len(clutter) // 20] = True
-    visual_hull.cleaned(rig, (msgspec.structs.replace(first, silhouette=pack(clutter)), second))
+    visual_hull.cleaned(rig, (msgspec.structs.replace(person, silhouette=pack(clutter)), other))
 
 
 def _rig(size: tuple[int, int]) -> Rig:
@@ -54,7 +55,7 @@ def _rig(size: tuple[int, int]) -> Rig:
 def _view(viewer: ViewerNumber, index: int, size: tuple[int, int], rig: Rig) -> View:
     pose = rest_pose()
     pose[POSE_INDEX["y"]] = 1.0
-    camera, body = rig.cameras[viewer - 1], body_vector(thesis_bdp(1.75))
+    camera, body = rig.cameras[place_in_rig(viewer)], body_vector(thesis_bdp(1.75))
     mask = draw_body(body, pose, view_of(camera), size)
     view = silhouette_view(viewer, mask, index, float(index))
     places_px = project(camera, joints(body, pose)).tolist()

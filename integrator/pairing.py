@@ -3,7 +3,7 @@
 from typing import Final, NamedTuple, Protocol, TypeVar
 
 from common.bus.instant import Instant, instant_of
-from common.bus.messages import View, ViewerNumber
+from common.bus.messages import View, ViewerNumber, place_in_rig
 
 QUEUE: Final = 128
 """Largest number of one viewer's reports that wait for others: eight seconds at 15 Hz; a process
@@ -87,7 +87,7 @@ def step(state: State, report: View) -> tuple[State, list[Instant]]:
     reports, not on the order of their arrival, as long as no queue overflows and nothing was called
     overdue.
     """
-    own = report.viewer - 1
+    own = place_in_rig(report.viewer)
     if state.over[own]:
         return state._replace(late=state.late + 1), []
     queue = (*state.waiting[own], report)
@@ -116,7 +116,7 @@ def _is_nearest(earlier: Taken, later: Taken) -> bool:
 
 def begin(state: State, viewer: ViewerNumber) -> State:
     """A viewer that had ended, or was absent, is present again: it is waited for."""
-    own = viewer - 1
+    own = place_in_rig(viewer)
     return state._replace(
         over=with_item(state.over, own, False),
         away=with_item(state.away, own, False),
@@ -126,17 +126,17 @@ def begin(state: State, viewer: ViewerNumber) -> State:
 
 def awaited(state: State, viewer: ViewerNumber) -> State:
     """An absent viewer is waited for again, as waits are longer now."""
-    return state._replace(away=with_item(state.away, viewer - 1, False))
+    return state._replace(away=with_item(state.away, place_in_rig(viewer), False))
 
 
 def away(state: State, viewer: ViewerNumber) -> tuple[State, list[Instant]]:
     """A viewer is absent: it is not waited for until it reports again."""
-    return _settled(state._replace(away=with_item(state.away, viewer - 1, True)))
+    return _settled(state._replace(away=with_item(state.away, place_in_rig(viewer), True)))
 
 
 def end(state: State, viewer: ViewerNumber) -> tuple[State, list[Instant]]:
     """A viewer has ended: what waits for it goes out, and it is not waited for again."""
-    return _settled(state._replace(over=with_item(state.over, viewer - 1, True)))
+    return _settled(state._replace(over=with_item(state.over, place_in_rig(viewer), True)))
 
 
 def overdue(state: State, now_s: float, wait_s: float) -> tuple[State, list[Instant]]:
@@ -155,7 +155,7 @@ def overdue(state: State, now_s: float, wait_s: float) -> tuple[State, list[Inst
     if due is None or oldest_s + wait_s >= now_s:
         return state, []
     for viewer in due.awaited:
-        state = state._replace(away=with_item(state.away, viewer - 1, True))
+        state = state._replace(away=with_item(state.away, place_in_rig(viewer), True))
     return _settled(state)
 
 
@@ -196,7 +196,7 @@ def _due(state: State) -> _Due | None:
 
 def _is_awaited(state: State, viewer: ViewerNumber, middle_s: float) -> bool:
     """Whether a viewer without a report may still have a frame of an instant."""
-    own = viewer - 1
+    own = place_in_rig(viewer)
     if state.waiting[own] or state.over[own] or state.away[own]:
         return False
     return state.next_s[own] - middle_s <= state.period_s / 2

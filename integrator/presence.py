@@ -3,7 +3,7 @@
 from typing import Final, NamedTuple
 
 from common.bus.control_messages import Ended
-from common.bus.messages import CameraFault, View, ViewerNumber
+from common.bus.messages import CameraFault, View, ViewerNumber, place_in_rig
 from common.bus.rate import silent
 from integrator.pairing import with_item
 
@@ -59,7 +59,7 @@ def init(period_s: float, viewers: tuple[ViewerNumber, ...], cameras: int = 2) -
 
 def heard(state: State, report: View, now_s: float) -> State:
     """A viewer reports: it is present, whatever the bus says."""
-    own = report.viewer - 1
+    own = place_in_rig(report.viewer)
     if state.began_s == NEVER_S:
         state = state._replace(began_s=now_s, heard_s=(now_s,) * len(state.heard_s))
     return state._replace(
@@ -71,7 +71,7 @@ def heard(state: State, report: View, now_s: float) -> State:
 
 def came(state: State, viewer: ViewerNumber, now_s: float) -> State:
     """A viewer is on the bus; after an absence or an end it must report to be present again."""
-    own = viewer - 1
+    own = place_in_rig(viewer)
     missed = state.gone_s[own] != NEVER_S or state.over_s[own] != NEVER_S
     return state._replace(
         heard_s=with_item(state.heard_s, own, now_s),
@@ -82,12 +82,12 @@ def came(state: State, viewer: ViewerNumber, now_s: float) -> State:
 
 def went(state: State, viewer: ViewerNumber, now_s: float) -> State:
     """A viewer is no longer on the bus."""
-    return state._replace(gone_s=with_item(state.gone_s, viewer - 1, now_s))
+    return state._replace(gone_s=with_item(state.gone_s, place_in_rig(viewer), now_s))
 
 
 def ended(state: State, said: Ended, now_s: float) -> State:
     """A viewer has ended."""
-    own = said.viewer - 1
+    own = place_in_rig(said.viewer)
     return state._replace(
         over_s=with_item(state.over_s, own, now_s),
         why_over=with_item(state.why_over, own, said.why),

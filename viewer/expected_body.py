@@ -4,7 +4,7 @@ from typing import Final, NamedTuple
 
 from common.body.body import Bdp
 from common.body.observation import Facing, Pixel
-from common.bus.messages import Guide, ViewerNumber
+from common.bus.messages import Guide, ViewerNumber, place_in_rig
 
 EXPECTED: Final = ("measuring", "tracking", "predicted")
 """States of a guide that predicts the body's place; otherwise the body is searched anew."""
@@ -28,7 +28,7 @@ class ExpectedBody(NamedTuple):
 
 def expected_body(guide: Guide | None, viewer: ViewerNumber) -> ExpectedBody | None:
     """The prediction for a viewer; None where the integrator has none."""
-    n = viewer - 1
+    n = place_in_rig(viewer)
     if guide is None or guide.status not in EXPECTED or guide.bdp is None:
         return None
     if not guide.scale_px_per_m[n] > 0.0:

@@ -31,7 +31,16 @@ from animator.scene import (
 )
 from common.body.body import ANGLES_IN_POSE
 from common.body.observation import Facing
-from common.bus.messages import Body, Performance, Picture, Posture, ScaleSource, Status, View
+from common.bus.messages import (
+    Body,
+    Performance,
+    Picture,
+    Posture,
+    ScaleSource,
+    Status,
+    View,
+    place_in_rig,
+)
 from common.raster.silhouette_report import mask_of
 from common.rig.camera import Camera, Rig
 from common.rig.upright_camera import as_worked_on
@@ -155,7 +164,7 @@ def _views(
 def _view(
     report: View, body: Body, limbs: Sequence[NDArray[np.float64]], picture: Picture | None
 ) -> ShownView:
-    own = report.viewer - 1
+    own = place_in_rig(report.viewer)
     joints = [
         as_worked_on(np.array(place), report.upright)
         for places in (body.joints_px, body.extremities_px)

@@ -25,6 +25,11 @@ MOTION_S: Final = 0.5
 Point = tuple[float, float, float]
 
 
+def place_in_rig(number: ViewerNumber) -> int:
+    """Place, from 0, of a viewer's camera in what is ordered as the rig's cameras are."""
+    return number - 1
+
+
 class Message(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Base of all messages."""
 

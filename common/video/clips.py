@@ -9,7 +9,7 @@ from typing import Final
 
 import msgspec
 
-from common.bus.messages import ViewerNumber
+from common.bus.messages import ViewerNumber, place_in_rig
 from common.config.explained import explained
 from common.config.picture_size import size_of, working_size
 from common.config.settings import Settings
@@ -254,7 +254,7 @@ def _places(
                 "those of the clip (tritrack calibrate import --camera NAME --camera NAME)"
             )
         lone = len(wanted) == len(names) == 1
-        places.append(names.index(called) if called else 0 if lone else one.number - 1)
+        places.append(names.index(called) if called else 0 if lone else place_in_rig(one.number))
         if places[-1] >= len(names):
             has = f"{len(names)} camera{'s' if len(names) > 1 else ''}"
             raise ClipError(
@@ -277,12 +277,12 @@ def _oddities(views: tuple[ClipView, ...], meta: Meta, rig: Rig | None) -> Itera
             f"the views differ in rate: of the {view.frames} frames of {view.source} those "
             f"{len(view.picked)} are looked at that meet the other's, {view.fps:g} a second"
         )
-    for first, second in pairwise(views):
-        if first.source_size != second.source_size:
-            sizes = "{}x{} and {}x{}".format(*first.source_size, *second.source_size)
+    for one, other in pairwise(views):
+        if one.source_size != other.source_size:
+            sizes = "{}x{} and {}x{}".format(*one.source_size, *other.source_size)
             yield f"the views differ in size: {sizes}"
-        plain = not (first.capture_s or second.capture_s)
-        if plain and first.frames and second.frames and first.frames != second.frames:
-            yield f"the views differ in length: {first.frames} and {second.frames} frames"
+        plain = not (one.capture_s or other.capture_s)
+        if plain and one.frames and other.frames and one.frames != other.frames:
+            yield f"the views differ in length: {one.frames} and {other.frames} frames"
     if rig is not None and (odd := nearly_one_view(rig)):
         yield odd

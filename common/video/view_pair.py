@@ -76,16 +76,16 @@ def refuse_same_source(named: list[Footage]) -> None:
     Raises:
         ClipError: When two are the same.
     """
-    for first, second in combinations(named, 2):
-        if _is_same(first.source, second.source):
-            what = "two videos" if is_recorded(first.source) else "two cameras"
+    for one, other in combinations(named, 2):
+        if _is_same(one.source, other.source):
+            what = "two videos" if is_recorded(one.source) else "two cameras"
             raise ClipError(
-                f"views {first.number} and {second.number} are the same: {first.source} and "
-                f"{second.source}; name {what}, or add --views 1"
+                f"views {one.number} and {other.number} are the same: {one.source} and "
+                f"{other.source}; name {what}, or add --views 1"
             )
 
 
-def _is_same(first: Source, second: Source) -> bool:
-    if is_recorded(first) and is_recorded(second):
-        return filecmp.cmp(first, second, shallow=False)
-    return first == second
+def _is_same(one: Source, other: Source) -> bool:
+    if is_recorded(one) and is_recorded(other):
+        return filecmp.cmp(one, other, shallow=False)
+    return one == other

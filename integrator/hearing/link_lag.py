@@ -2,7 +2,7 @@
 
 from typing import Final, NamedTuple
 
-from common.bus.messages import ViewerNumber
+from common.bus.messages import ViewerNumber, place_in_rig
 from integrator.pairing import with_item
 
 LOOKS_AT: Final = 30
@@ -41,7 +41,7 @@ def init(period_s: float, cameras: int = 2) -> State:
 
 def heard(state: State, viewer: ViewerNumber, now_s: float, late_s: float) -> State:
     """Process a report that came now, with its delay since capture."""
-    link = state.links[viewer - 1]
+    link = state.links[place_in_rig(viewer)]
     late = (*link.late_s, late_s)
     if now_s - link.came_s < state.period_s / 2 and link.late_s:
         late = (*link.late_s[:-1], min(link.late_s[-1], late_s))
@@ -78,4 +78,4 @@ def told(state: State, since_s: float) -> tuple[State, list[str]]:
 
 
 def _with(state: State, viewer: ViewerNumber, link: Link) -> State:
-    return state._replace(links=with_item(state.links, viewer - 1, link))
+    return state._replace(links=with_item(state.links, place_in_rig(viewer), link))

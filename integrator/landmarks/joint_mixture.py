@@ -158,18 +158,18 @@ def _drop(centre_m: Vector, direction: Vector, here: Vector) -> None:
 @compiled
 def _meet(centre_m: Vector, one: Vector, other_m: Vector, two: Vector, here: Vector) -> bool:
     """Set the middle of the shortest line between two rays; False where they are parallel."""
-    cosine = first = second = 0.0
+    cosine = along = along_other = 0.0
     for i in range(3):
         apart = centre_m[i] - other_m[i]
         cosine += one[i] * two[i]
-        first += one[i] * apart
-        second += two[i] * apart
+        along += one[i] * apart
+        along_other += two[i] * apart
     sine_squared = 1.0 - cosine * cosine
     if sine_squared < 1e-6:
         return False
     for i in range(3):
-        near = centre_m[i] + one[i] * (cosine * second - first) / sine_squared
-        far = other_m[i] + two[i] * (second - cosine * first) / sine_squared
+        near = centre_m[i] + one[i] * (cosine * along_other - along) / sine_squared
+        far = other_m[i] + two[i] * (along_other - cosine * along) / sine_squared
         here[i] = 0.5 * (near + far)
     return True
 
@@ -203,23 +203,23 @@ def _look(given: Evidence, view: int, here: Vector, normal: Vector, right: Vecto
 
     Each ray pulls by the probability that the joint is on it.
     """
-    first, second = given.directions[view]
+    likeliest, another = given.directions[view]
     inlier_probability, other = given.inliers[view]
     centre_m, spread_m, roughly_m = (
         given.centres_m[view],
         given.spreads_m[1 + view],
         SHOWN.roughly * given.stature_m,
     )
-    square = _beside(centre_m, first, here)
+    square = _beside(centre_m, likeliest, here)
     unlikely = 1.0 - inlier_probability - other
     is_right = _bell(square, spread_m, inlier_probability, 2)
     is_rough = _bell(square, roughly_m, unlikely * SHOWN.often, 2)
-    is_second = _bell(_beside(centre_m, second, here), spread_m, other, 2) if other > 0.0 else 0.0
-    total = is_right + is_rough + is_second + _anywhere(roughly_m, unlikely, SHOWN.often, SHOWN, 2)
+    is_other = _bell(_beside(centre_m, another, here), spread_m, other, 2) if other > 0.0 else 0.0
+    total = is_right + is_rough + is_other + _anywhere(roughly_m, unlikely, SHOWN.often, SHOWN, 2)
     weight = (is_right / spread_m**2 + is_rough / roughly_m**2) / total
-    _pull(centre_m, first, weight, normal, right)
-    if is_second > 0.0:
-        _pull(centre_m, second, is_second / spread_m**2 / total, normal, right)
+    _pull(centre_m, likeliest, weight, normal, right)
+    if is_other > 0.0:
+        _pull(centre_m, another, is_other / spread_m**2 / total, normal, right)
     return math.log(total)
 
 

@@ -10,6 +10,7 @@ import msgspec
 import numpy as np
 
 from common.body.body import Vector
+from common.bus.messages import place_in_rig
 from common.config.settings import Settings
 from common.npz_file import Arrays, Facts
 from common.rig.camera import project
@@ -120,7 +121,7 @@ def _shown(
         row_of = truth.get(f"frames_cam{view.number}", np.arange(len(truth["present"])))
         picture, enlarged = _taken(view, int(np.abs(row_of - row).argmin()), decoders)
         if rig is not None:
-            camera = rig.cameras[view.number - 1]
+            camera = rig.cameras[place_in_rig(view.number)]
             true, tracked = (
                 enlarged * project(camera, joints[one.place])
                 for joints in (compared.true_m, compared.tracked_m)

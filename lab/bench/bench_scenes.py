@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from common.body.body import POSE_INDEX, Floats, Vector, rest_pose
 from common.body.kinematics import ALL_LIMBS, FRAME, hang_limbs, limb_frames, place_limbs
 from common.body.proportions import body_vector, thesis_bdp
+from common.bus.messages import place_in_rig
 from common.compiled import compiled
 from common.raster.bits import Bits, pack_words, unpack_words
 from common.raster.kernel import draw_body, draw_limbs, limb_primitive, score
@@ -161,7 +162,7 @@ def _view(size: tuple[int, int], viewer: int, off_px: tuple[float, float] = (0.0
     """The paper's camera; the navel is in the middle of the picture."""
     width, height = size
     root = (width / 2 + off_px[0], height / 2 + off_px[1])
-    return view_at(np.array(PAPER_ROTATIONS[viewer - 1]), STATURE_SHARE * height, root)
+    return view_at(np.array(PAPER_ROTATIONS[place_in_rig(viewer)]), STATURE_SHARE * height, root)
 
 
 def _polygon(primitive: Vector) -> NDArray[np.int32]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from animator.page.inset import Image, draw_contours, inset, limb_contours, limb_ends
 from animator.scene import figure
-from common.bus.messages import Body, Picture, View, ViewerNumber
+from common.bus.messages import Body, Picture, View, ViewerNumber, place_in_rig
 from common.config import config_file
 from common.method import Mode
 from common.rig.camera import Rig
@@ -69,7 +69,7 @@ def _shown(now: Instant, number: ViewerNumber, rig: Rig | None) -> Image:
     image = inset(report, seen)
     drawn = figure(body)
     if drawn is not None and rig is not None:
-        contours = limb_contours(rig.cameras[number - 1], limb_ends(drawn))
+        contours = limb_contours(rig.cameras[place_in_rig(number)], limb_ends(drawn))
         draw_contours(image, contours, report.width)
     return _fitted(image)
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import msgspec
 
-from common.bus.messages import MOST_VIEWS, ViewerNumber
+from common.bus.messages import MOST_VIEWS, ViewerNumber, place_in_rig
 from common.config.part_settings import SettingsError
 from common.config.picture_size import working_size
 from common.rig.absurd_rig import refuse_absurd
@@ -85,7 +85,7 @@ def clip_of(
 
 def _place(rig: Rig, number: ViewerNumber) -> int:
     """Index of a viewer's camera in a calibration."""
-    return 0 if len(rig.cameras) == 1 else number - 1
+    return 0 if len(rig.cameras) == 1 else place_in_rig(number)
 
 
 def _uncalibrated(names: Sequence[str]) -> dict[str, ViewerNumber]:

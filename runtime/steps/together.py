@@ -6,7 +6,7 @@ from typing import Any
 
 from common.body.observation import Landmarks
 from common.bus.instant import instant_of
-from common.bus.messages import Body, Guide, View, ViewerNumber
+from common.bus.messages import Body, Guide, View, ViewerNumber, place_in_rig
 from common.config.settings import Settings
 from common.method import Method
 from common.video.clip_facts import Clip, ClipView, whole_rig
@@ -41,7 +41,7 @@ def viewer_of(
         somebody: The person in the first frame, where the whole clip was examined before.
     """
     rig = whole_rig(clip)
-    camera = None if rig is None else rig.cameras[view.number - 1]
+    camera = None if rig is None else rig.cameras[place_in_rig(view.number)]
     setup = track.Setup(view.number, camera, settings, method, len(clip.views) == 1)
     return track.init(setup, background, somebody=somebody)
 

@@ -9,9 +9,9 @@ Turns = NDArray[np.float64]
 """(n, 3, 3) rotations."""
 
 
-def between(first: Turns, second: Turns, share: float) -> Turns:
+def between(one: Turns, other: Turns, share: float) -> Turns:
     """A share of the shortest turn from one rotation to another."""
-    return np.asarray(first @ _partly(np.swapaxes(first, 1, 2) @ second, share))
+    return np.asarray(one @ _partly(np.swapaxes(one, 1, 2) @ other, share))
 
 
 def about(axis: Vector, angle_deg: Vector) -> Turns:

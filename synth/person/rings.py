@@ -43,10 +43,10 @@ def lofted(rings: list[Ring], along: str) -> Loft:
     corners = []
     for ring in rings:
         power = 2.0 / ring.square
-        first = ring.half_x * np.sign(cos) * np.abs(cos) ** power
-        second = ring.half_z * np.sign(sin) * np.abs(sin) ** power
+        wide = ring.half_x * np.sign(cos) * np.abs(cos) ** power
+        deep = ring.half_z * np.sign(sin) * np.abs(sin) ** power
         flat = np.zeros(SIDES)
-        offset = (first, flat, second) if along == "y" else (first, second, flat)
+        offset = (wide, flat, deep) if along == "y" else (wide, deep, flat)
         corners.append(np.array(ring.centre) + np.stack(offset, axis=1))
     ends = [np.array(rings[0].centre), np.array(rings[-1].centre)]
     vertices = np.concatenate([*corners, np.stack(ends)])

@@ -187,11 +187,11 @@ def _limb_turn(angle: dict[str, Vector], joint: str, sign: float) -> NDArray[np.
 
 def turned(axis: str, angle_deg: Vector) -> NDArray[np.float64]:
     """Right-handed rotations about x, y or z, (n, 3, 3)."""
-    first, second = {"x": (1, 2), "y": (2, 0), "z": (0, 1)}[axis]
+    i, j = {"x": (1, 2), "y": (2, 0), "z": (0, 1)}[axis]
     angle = np.radians(angle_deg)
     matrix = np.zeros((len(angle), 3, 3))
-    matrix[:, 3 - first - second, 3 - first - second] = 1.0
-    matrix[:, first, first] = matrix[:, second, second] = np.cos(angle)
-    matrix[:, second, first] = np.sin(angle)
-    matrix[:, first, second] = -np.sin(angle)
+    matrix[:, 3 - i - j, 3 - i - j] = 1.0
+    matrix[:, i, i] = matrix[:, j, j] = np.cos(angle)
+    matrix[:, j, i] = np.sin(angle)
+    matrix[:, i, j] = -np.sin(angle)
     return matrix

@@ -175,8 +175,8 @@ def draw(
                 u = p * rest[a, 0] + q * rest[b, 0] + r * rest[c, 0]
                 v = p * rest[a, 1] + q * rest[b, 1] + r * rest[c, 1]
                 w = p * rest[a, 2] + q * rest[b, 2] + r * rest[c, 2]
-                second, weave = _woven(material, pattern, u, v, w)
-                colour = len(palette) - 1 if second else material
+                accent, weave = _woven(material, pattern, u, v, w)
+                colour = len(palette) - 1 if accent else material
                 for k in range(3):
                     colours[row, column, k] = palette[colour, k] * bright * weave
 
@@ -187,9 +187,9 @@ def _woven(
 ) -> tuple[bool, float]:
     """Whether cloth has its second colour at a point at rest, and the brightness of a thread
     there."""
-    second = material == pattern[2] and _second(pattern[0], pattern[1], x, y, z)
+    accent = material == pattern[2] and _second(pattern[0], pattern[1], x, y, z)
     thread = math.floor(x * THREADS) ^ math.floor((y + z) * THREADS)
-    return second, 0.98 + 0.04 * (thread & 1)
+    return accent, 0.98 + 0.04 * (thread & 1)
 
 
 @compiled

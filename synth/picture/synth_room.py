@@ -228,9 +228,9 @@ def _entering(
         least: Smallest distance of a hit: a point on a box does not shade itself.
     """
     with np.errstate(divide="ignore", invalid="ignore"):
-        first, second = (box.low - origins) / rays, (box.high - origins) / rays
-    near = np.minimum(first, second).max(axis=1)
-    far = np.maximum(first, second).min(axis=1)
+        to_low, to_high = (box.low - origins) / rays, (box.high - origins) / rays
+    near = np.minimum(to_low, to_high).max(axis=1)
+    far = np.maximum(to_low, to_high).min(axis=1)
     found: Vector = np.where((near < far) & (near > least), near, np.inf)
     return found
 

@@ -16,9 +16,9 @@ class Finish(NamedTuple):
     kind: str
     walls: str
     floor: str
-    first: Vector
-    second: Vector
-    third: Vector
+    base: Vector
+    accent: Vector
+    detail: Vector
     pitch_m: float
     salt: float
     """Seed of this object's grain."""
@@ -39,8 +39,8 @@ def finish(kind: str, rng: np.random.Generator) -> Finish:
             tints[2] = _tint(rng, 0.12) * 0.8
     walls, floor = str(rng.choice(WALLS)), str(rng.choice(FLOORS))
     pitch = float(rng.uniform(0.09, 0.2))
-    first, second, third = tints
-    return Finish(kind, walls, floor, first, second, third, pitch, float(rng.uniform(0, 50)))
+    base, accent, detail = tints
+    return Finish(kind, walls, floor, base, accent, detail, pitch, float(rng.uniform(0, 50)))
 
 
 def painted(look: Finish, points_m: NDArray[np.float64], low: Vector, high: Vector) -> Colours:
@@ -59,10 +59,10 @@ def _shell(
 ) -> Colours:
     x, y, z = points_m.T
     colours = _wall(look, across, y)
-    colours[y < 0.09] = 0.25 * look.first + 150.0
+    colours[y < 0.09] = 0.25 * look.base + 150.0
     ground, roof = _on(y, low[1], low[1]), _on(y, high[1], high[1])
     colours[ground] = _ground(look, x[ground], z[ground])
-    colours[roof] = 0.2 * look.first + 130.0
+    colours[roof] = 0.2 * look.base + 130.0
     return colours
 
 
@@ -81,8 +81,8 @@ def _wall(look: Finish, u: Vector, v: Vector) -> Colours:
         )
     elif look.walls == "panels":
         mix = np.where(v < 0.9, 1.0, 0.0) + 0.5 * ((u % (4 * look.pitch_m)) < 0.012) * (v < 0.9)
-    second = 0.62 * look.first + 0.22 * look.second
-    return (look.first + mix[:, None] * (second - look.first)) * stain[:, None]
+    mixed = 0.62 * look.base + 0.22 * look.accent
+    return (look.base + mix[:, None] * (mixed - look.base)) * stain[:, None]
 
 
 def _ground(look: Finish, x: Vector, z: Vector) -> Colours:
@@ -96,7 +96,7 @@ def _ground(look: Finish, x: Vector, z: Vector) -> Colours:
         tone = tone + 0.1 * _hash(np.floor(x / 0.4), np.floor(z / 0.4), look.salt)
     else:
         tone = 0.7 + 0.12 * _clouds(30 * x, 30 * z, look.salt) + 0.08 * _hash(x * 400, z * 400, 1.0)
-    return look.third * tone[:, None]
+    return look.detail * tone[:, None]
 
 
 def _shelf(look: Finish, u: Vector, v: Vector, size: Vector) -> Colours:
@@ -107,31 +107,31 @@ def _shelf(look: Finish, u: Vector, v: Vector, size: Vector) -> Colours:
     height = 0.15 + 0.1 * _hash(book, board, look.salt)
     books = 0.55 + 0.45 * _hash(book, board, look.salt + 3.0)
     inside = np.where((v % 0.3) - 0.03 < height, books, 0.15)
-    return np.where(frame[:, None], 0.5 * look.first, inside[:, None] * look.second)
+    return np.where(frame[:, None], 0.5 * look.base, inside[:, None] * look.accent)
 
 
 def _chest(look: Finish, u: Vector, v: Vector, _size: Vector) -> Colours:
     tone = 0.75 + 0.15 * _clouds(4 * u, 25 * v, look.salt) - 0.35 * ((v % 0.26) < 0.015)
-    return 0.75 * look.first * tone[:, None]
+    return 0.75 * look.base * tone[:, None]
 
 
 def _picture(look: Finish, u: Vector, v: Vector, size: Vector) -> Colours:
     wide, tall = max(size[0], size[2]), size[1]
     frame = (u < 0.03) | (u > wide - 0.03) | (v < 0.03) | (v > tall - 0.03)
     mix = _clouds(9 * u, 9 * v, look.salt)[:, None]
-    return np.where(frame[:, None], 45.0, look.first * mix + look.second * (1 - mix))
+    return np.where(frame[:, None], 45.0, look.base * mix + look.accent * (1 - mix))
 
 
 def _curtain(look: Finish, u: Vector, v: Vector, _size: Vector) -> Colours:
     fold = 0.5 + 0.5 * np.sin(2 * np.pi * (u + 0.01 * np.sin(3 * v)) / (0.6 * look.pitch_m))
-    mixed = look.first + fold[:, None] * (look.second - look.first)
+    mixed = look.base + fold[:, None] * (look.accent - look.base)
     return mixed * (0.75 + 0.25 * fold[:, None])
 
 
 def _door(look: Finish, u: Vector, v: Vector, _size: Vector) -> Colours:
     board = np.floor(v / 0.34)
     tone = 0.7 + 0.25 * _hash(board, np.floor(u / 0.5), look.salt) - 0.3 * ((v % 0.34) < 0.012)
-    return look.first * (tone + 0.06 * _clouds(3 * u, 40 * v, look.salt))[:, None]
+    return look.base * (tone + 0.06 * _clouds(3 * u, 40 * v, look.salt))[:, None]
 
 
 def _on(value: Vector, low: float, high: float) -> NDArray[np.bool_]:

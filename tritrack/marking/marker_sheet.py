@@ -8,6 +8,7 @@ import numpy as np
 from animator.marking.sheet import Kind, Mark, Number, Plan, Seen, Sheet, Size, Solved
 from calibration.paper.markers import Aim, Markers, MarkerView, fitted_lines, line_markers
 from common.body.observation import Pixel
+from common.bus.messages import place_in_rig
 from common.rig.rig_file import CalibrationError
 from tritrack.marking.marking_method import MarkingMethod, toml_number, toml_pixels
 from tritrack.marking.suspect_point import suspect_point
@@ -121,7 +122,7 @@ def _view(sheet: Sheet, number: int) -> MarkerView:
 
 
 def _points(sheet: Sheet, number: int, kind: str) -> tuple[Pixel, ...]:
-    points = [mark.px[number - 1] for mark in sheet.marks if mark.kind == kind]
+    points = [mark.px[place_in_rig(number)] for mark in sheet.marks if mark.kind == kind]
     return tuple(at for at in points if at is not None)
 
 
@@ -137,7 +138,7 @@ def _seen(sheet: Sheet, number: int, size: Size) -> tuple[Seen, Aim | None]:
     except CalibrationError as error:
         return Seen(False, str(error)), None
     lines = dict(zip(("floor", "wall"), fitted_lines(view, size), strict=True))
-    points = [mark.px[number - 1] for mark in sheet.marks]
+    points = [mark.px[place_in_rig(number)] for mark in sheet.marks]
     feet, off_px = [], []
     for mark, at in zip(sheet.marks, points, strict=True):
         off = None if at is None else float(lines[mark.kind] @ (*at, 1.0))

@@ -22,6 +22,7 @@ from calibration.paper.poles import (
 )
 from common.body.body import Vector
 from common.body.observation import Pixel
+from common.bus.messages import place_in_rig
 from common.rig.rig_file import CalibrationError
 from tritrack.marking.marking_method import MarkingMethod, toml_number, toml_pixels
 from tritrack.marking.suspect_point import suspect_point
@@ -142,7 +143,7 @@ def _seen(sheet: Sheet, number: int, size: Size) -> tuple[Seen, CameraQuality | 
     except CalibrationError as error:
         return Seen(False, str(error)), None
     drawn = drawn_poles(measured, number, known)
-    tops = [mark.px[number - 1] for mark in sheet.marks]
+    tops = [mark.px[place_in_rig(number)] for mark in sheet.marks]
     off_px = [
         None if top is None else float(np.hypot(*(np.array(top) - expected)))
         for top, expected in zip(tops, drawn[:, 0], strict=True)

@@ -10,7 +10,7 @@ from common.body.body import POSE_INDEX, rest_pose
 from common.body.kinematics import ALL_LIMBS
 from common.body.observation import Facing, Observation, Search
 from common.body.proportions import body_vector, stature, thesis_bdp
-from common.bus.messages import Guide, ViewerNumber
+from common.bus.messages import Guide, ViewerNumber, place_in_rig
 from common.config.part_settings import SearchSettings
 from common.method import Method
 from common.raster.kernel import CENTRE_X, CENTRE_Y
@@ -82,7 +82,7 @@ def step(
         guide: The integrator's guide after the frame before; None at the start.
     """
     known = expected_body(guide, state.viewer)
-    facing = state.vote if guide is None else guide.facing[state.viewer - 1]
+    facing = state.vote if guide is None else guide.facing[place_in_rig(state.viewer)]
     if known is not None:
         model = _expected(state, mask, known, facing)
     else:
@@ -136,7 +136,7 @@ def _at_rest(state: State, mask: Mask, person: Observation, guide: Guide | None)
     The body of the guide if one was known before, else the thesis's proportions (T4).
     """
     bdp = thesis_bdp(1.0) if guide is None or guide.bdp is None else guide.bdp
-    facing = state.vote if guide is None else guide.facing[state.viewer - 1]
+    facing = state.vote if guide is None else guide.facing[place_in_rig(state.viewer)]
     sole = person.box.bottom + 1
     scale = (sole - person.box.top) / stature(bdp)
     pose = rest_pose()

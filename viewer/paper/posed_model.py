@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from common.body.body import POSE_INDEX, POSE_NAMES, YAW_DEG, Vector
 from common.body.kinematics import ALL_LIMBS
 from common.body.observation import Facing
-from common.bus.messages import ViewerNumber
+from common.bus.messages import ViewerNumber, place_in_rig
 from common.raster.bits import Bits, count, pack_words
 from common.raster.kernel import CENTRE_X, CENTRE_Y, DEPTH, FOCAL_X, FOCAL_Y, SHIFT, VIEW, match
 from common.raster.similarity import Mask
@@ -126,7 +126,7 @@ def view_at(rotation: NDArray[np.float64], px_per_m: float, root_px: tuple[float
 
 def rotation_of(camera: Camera | None, viewer: ViewerNumber) -> NDArray[np.float64]:
     """World to camera: the calibrated rotation, or the paper's for this viewer (C1)."""
-    return np.array(PAPER_ROTATIONS[viewer - 1] if camera is None else camera.R)
+    return np.array(PAPER_ROTATIONS[place_in_rig(viewer)] if camera is None else camera.R)
 
 
 def yaw_of(facing: Facing, viewer: ViewerNumber) -> float:
