@@ -1,4 +1,5 @@
-"""The integrator process: reports of an instant in, bodies and guides out; the room's clock."""
+"""The integrator process: views of an instant in, bodies and guides out; it owns the room's
+clock."""
 
 import threading
 import time
@@ -25,7 +26,7 @@ from integrator.merge_state import Start, State
 from integrator.single.sight import Annotations
 
 LAST_WORDS_S: Final = 1.0
-"""All others meet here: how long the room stays open after the last body."""
+"""How long the room stays open after the last body, seconds: all others are connected to it."""
 SUPERVISED_S: Final = 60.0
 """The same where a supervisor ends the processes in order."""
 
@@ -39,7 +40,7 @@ def run(
     wait_s: float = 0.0,
     estate: Estate = Estate(None),
 ) -> None:
-    """Merge what the viewers report until each has ended; wait so long for the page."""
+    """Merge the viewers' reports until each has ended; wait for the page for a given time."""
     pace = Pace(period_s)
     heart = Heart(bus, "integrator", pace)
     begun, cameras = (estate.over, estate.start_s), len(state.frames)
@@ -81,7 +82,7 @@ def run(
 def _obeyed(
     state: State, said: Annotations, asked: list[Command], bus: Bus
 ) -> tuple[State, Annotations]:
-    """What the person at the page asks for, done and answered."""
+    """Commands from the page, carried out and answered."""
     for command in asked:
         state, said, answer = commands.step(state, said, command)
         if answer is not None:
@@ -93,8 +94,8 @@ def main(settings: Settings, clip: Clip, context: ProcessContext = ProcessContex
     """Open the room, merge until the viewers end, close.
 
     Args:
-        settings: Of the run.
-        clip: What the viewers look at: their numbers, the rate, the rig.
+        settings: The run's settings.
+        clip: The viewers' clip: their numbers, the rate, the rig.
         context: How this process runs.
 
     Raises:
@@ -122,13 +123,13 @@ def main(settings: Settings, clip: Clip, context: ProcessContext = ProcessContex
         state = estate.taken_up(state)
         warm_up(settings, clip.views[0].size)
         settle()
-        bus.announce("integrator")  # viewers say then what was not heard: it listens at once
+        bus.announce("integrator")  # viewers repeat lost reports then: it subscribes at once
         run(state, viewers, period_s, bus, stop, page_wait_s(settings, clip, context), estate)
         stop.wait(SUPERVISED_S if context.supervised else LAST_WORDS_S)
 
 
 def page_wait_s(settings: Settings, clip: Clip, context: ProcessContext) -> float:
-    """How long a run waits for somebody to open its page: a camera waits for nobody."""
+    """How long a run waits for its page to be opened; a run on cameras does not wait."""
     recorded = not any(is_camera(view.source) for view in clip.views)
     waits = context.supervised and settings.page.port and settings.page.wait and recorded
     return PAGE_S if waits else 0.0

@@ -1,4 +1,4 @@
-"""The reports of an instant in, one body out: place, body, facing, pose, in section 4's order."""
+"""The views of an instant in, one body out: place, body, facing, pose, in section 4's order."""
 
 from calibration.gate import moved_cameras, rig_agreement, silhouette_motion
 from common.body.body import ANGLE_NAMES, ANGLES_IN_POSE, Vector
@@ -35,16 +35,16 @@ from integrator.single.sight import Annotations, Sight
 def step(
     state: State, instant: Instant, annotations: Annotations = Annotations()
 ) -> tuple[State, Body, Guide]:
-    """One instant: what each viewer reports of it becomes one body, and a guide for the next.
+    """One instant: the viewers' reports become one body, and a guide for the next.
 
     Universal BDPs come from the opening posture (P46), the arbiter settles the facing (P48),
-    position and angles are fused (P50-P54) and smoothed; the viewers are told BDPs, positions
-    and facing for their next frame (P2). One view alone is lifted (thesis 3.1.5).
+    position and angles are fused (P50-P54) and smoothed; the viewers get BDPs, positions and facing
+    for their next frame (P2). A single view is lifted (thesis 3.1.5).
 
     Args:
         state: From `merge_state.init` or the step before.
-        instant: What each viewer reports.
-        annotations: What the user says of the frame, where one view is alone.
+        instant: The viewers' reports.
+        annotations: The user's inputs for the frame, where one view is alone.
     """
     state, dt_s = _at(state, instant)
     state = state._replace(
@@ -64,7 +64,7 @@ def step(
 
 
 def _followed(state: State, now: Sighting) -> tuple[State, Body, Guide]:
-    """An instant that shows a person: their body, pose and scores, and what is told of them."""
+    """An instant with a person: their body, pose and scores, and the messages about them."""
     due, method = state.settings.body.opening_frames, state.method
     body, settled_at = opening_posture.step(state.person.body, *now.two, due, method)
     found, body, now = _posed(state, body, now, settled_at)
@@ -80,7 +80,7 @@ def _followed(state: State, now: Sighting) -> tuple[State, Body, Guide]:
 
 
 def _following(state: State, body: Known, found: Posed) -> Following:
-    """The person, who may have just come, with their body and pose."""
+    """The person, new or known, with their body and pose."""
     person = state.person
     if isinstance(person, Following):
         return person._replace(body=body, found=found)
@@ -89,7 +89,7 @@ def _following(state: State, body: Known, found: Posed) -> Following:
 
 
 def _at(state: State, instant: Instant) -> tuple[State, float]:
-    """The state at the moment of an instant, and the time since the one before."""
+    """The state at the time of an instant, and the time since the one before."""
     now_s, before_s = instant.newest.captured_s, state.last_s
     frames = tuple(
         before if report is None else report.frame
@@ -100,7 +100,7 @@ def _at(state: State, instant: Instant) -> tuple[State, float]:
         for before, report in zip(state.uprights, instant.views, strict=True)
     )
     dt_s = 0.0
-    if isinstance(state.person, Following) and before_s is not None:  # who comes owes nothing
+    if isinstance(state.person, Following) and before_s is not None:  # else nothing before
         dt_s = max(0.0, now_s - before_s)
     number = _number(state, instant)
     return state._replace(
@@ -113,8 +113,8 @@ def _at(state: State, instant: Instant) -> tuple[State, float]:
 
 
 def _number(state: State, instant: Instant) -> int:
-    """Rows are counted by camera 1's frames; by those of the first that is there in a run without
-    it."""
+    """Rows are counted by camera 1's frames; in a run without it by those of the first camera
+    present."""
     first, *others = instant.views
     if first is not None:
         return first.frame
@@ -125,7 +125,7 @@ def _number(state: State, instant: Instant) -> int:
 
 
 def _with_rig(state: State, seen: Seen) -> State:
-    """The rig, assumed at the first sight of a whole person where none is calibrated."""
+    """The rig, assumed at the first view of a whole person where none is calibrated."""
     whole = [person for person in seen if person is not None and not person.cut]
     if state.rig is not None or not whole:
         return state
@@ -138,8 +138,8 @@ def _with_rig(state: State, seen: Seen) -> State:
 
 
 def _with_pair(state: State, pair: Places) -> State:
-    """The state with the pair of an instant: what networks remember, and the views' agreement, is
-    of the pair before."""
+    """The state with the pair of an instant; a new pair resets the networks' memory and the
+    views' agreement."""
     if state.pair in (None, pair):
         return state._replace(pair=pair)
     person = state.person
@@ -149,7 +149,7 @@ def _with_pair(state: State, pair: Places) -> State:
 
 
 def _with_agreement(state: State, now: Sighting) -> State:
-    """The state with what the pair shows of whether the rig is right."""
+    """The state with the pair's evidence about the rig."""
     first = now.instant.views[now.pair[0]]
     if first is None:
         return state
@@ -160,14 +160,14 @@ def _with_agreement(state: State, now: Sighting) -> State:
 def _posed(
     state: State, body: Known, now: Sighting, settled_at: Vector | None
 ) -> tuple[Posed, Known, Sighting]:
-    """The pose of an instant, with its body, and the instant without clutter: of one view,
+    """The pose of an instant, with its body, and the instant without clutter: from one view,
     proposed, or searched for by the viewers (4.3, 4.4).
 
     Args:
         state: Of the instant before.
-        body: As it is known now.
+        body: The body as now known.
         now: The instant.
-        settled_at: The navel's place where the body has just been measured (4.2).
+        settled_at: Place of the navel where the body has just been measured (4.2).
     """
     if state.method.stick_lifting or (state.proposes and None in now.two.seen):
         return _lone(state, body, now), body, now
@@ -186,7 +186,7 @@ def _posed(
 
 
 def _lone(state: State, body: Known, now: Sighting) -> Posed:
-    """The pose that one view shows: the other is gone, sees no person, or there is none."""
+    """The pose from a single view: the other is lost, sees no person, or does not exist."""
     before, method = state.person.found, state.method
     filed = two_of(now.filed_rig, now.seen, now.pair)
     place, person = filed.first_seen
@@ -209,7 +209,7 @@ def _lone(state: State, body: Known, now: Sighting) -> Posed:
 
 
 def _proposed(state: State, body: Known, now: Sighting) -> ProposedPose:
-    """The pose that both silhouettes propose: beyond the paper."""
+    """The pose proposed by both silhouettes: beyond the paper."""
     known = state.person.found
     before = proposed_pose.Before()
     if known is not None:
@@ -235,7 +235,7 @@ def _scores(person: Following, now: Sighting) -> tuple[float, ...]:
 
 
 def _score(body: Vector, pose: Vector, camera: Camera, person: Observation | None) -> float:
-    """S of the whole body in one picture, true perspective; 0 where that view has nobody."""
+    """S of the whole body in one picture, true perspective; 0 where that view has no person."""
     if person is None:
         return 0.0
     seen, view = words_of(person), view_of(camera)
@@ -243,11 +243,11 @@ def _score(body: Vector, pose: Vector, camera: Camera, person: Observation | Non
 
 
 def _smoothed(person: Following, method: Method, dt_s: float) -> tuple[Following, Vector]:
-    """The smooth angles; those of a pose that is not believed do not count."""
+    """The smoothed angles; those of a pose that is not believed do not count."""
     raw: Vector = person.pose[list(ANGLES_IN_POSE)]
     if not method.smoothing:
         return person, raw
-    believed = not person.doubted or person.smooth.P is None  # there is nothing else to go by yet
+    believed = not person.doubted or person.smooth.P is None  # there is no other angle yet
     smooth, angles, _ = smoothing.step(person.smooth, raw if believed else None, dt_s)
     if person.found.alone is not None and method.joint_limits:
         angles = joint_limits.clipped(angles)

@@ -1,4 +1,4 @@
-"""What the integrator remembers from one instant to the next."""
+"""The integrator's state from one instant to the next."""
 
 from typing import NamedTuple
 
@@ -17,73 +17,73 @@ from integrator.rig.best_pair import Places
 
 
 class State(NamedTuple):
-    """Everything, as one value."""
+    """The whole state."""
 
     settings: Settings
     method: Method
     rig: Rig | None
-    """None until somebody is seen, where no calibration is given."""
+    """None until a person is seen, where no calibration is given."""
     scale_source: ScaleSource
     proposes: bool
     """The network proposes poses; otherwise the viewers search for angles."""
     alone: bool
-    """One viewer is all that the run has."""
+    """The run has a single viewer."""
     period_s: float
     """Time between frames."""
     person: Person = Waiting()
-    """Who is followed since the instant before, if anyone."""
+    """The person who has been followed since the instant before, or none."""
     facing: tuple[Facing, ...] = ("facade", "flank")
     frames: tuple[int, ...] = (-1, -1)
-    """The last frame that was heard of each viewer, in the order of the rig's cameras."""
+    """The last frame received from each viewer, in the order of the rig's cameras."""
     last_s: float | None = None
     number: int = -1
-    """Of the instant: the frame of camera 1 that was taken then."""
+    """Number of the instant: the frame of camera 1 that was taken then."""
     numbered: int = -1
-    """The last number that an instant had."""
+    """The last number of an instant."""
     times: FrameTimes | None = None
     """When camera 1 takes its frames; None where it is no part of the run."""
     pair: Places | None = None
-    """The two views that showed the person best; None until somebody was seen."""
+    """The two views that showed the person best; None until a person was seen."""
     agreement: rig_agreement.State = rig_agreement.State()
     calibration: int = 0
-    """How often the rig was changed: places before and after do not compare."""
+    """Number of changes of the rig: places before and after a change do not compare."""
     uprights: Uprights = (None, None)
-    """How each view's picture comes from its file's, as it last told."""
+    """How each view's picture comes from its file's, by its last report."""
     stands: MovedCameras = MovedCameras()
-    """How the cameras stand, against how they stood when the rig was told."""
+    """Shifts of the cameras' pictures, now and when the rig was computed."""
     motion: silhouette_motion.State = silhouette_motion.init(2)
     """The silhouettes of the last half second."""
 
 
 class Start(NamedTuple):
-    """What else is known before the first frame."""
+    """Further knowledge before the first frame."""
 
     alone: bool = False
-    """One viewer is all that the run has."""
+    """The run has a single viewer."""
     source: ScaleSource | None = None
-    """Where the rig is from; None: it is calibrated, if there is one."""
+    """Source of the rig; None: it is calibrated, if there is one."""
     opening: Opening = Unknown()
-    """What is known of the body."""
+    """The body, as far as known."""
     times: FrameTimes | None = None
     """When camera 1 takes its frames."""
     by_person: bool = False
-    """A rig that is assumed is only the first guess: the person will tell it."""
+    """The rig is assumed, and will be replaced by one from the person."""
     uprights: Uprights = ()
-    """How the views' pictures come from their files', before any reports; empty: as they are."""
+    """How the views' pictures come from their files', before any reports; empty: directly."""
 
 
 def init(
     rig: Rig | None, period_s: float, settings: Settings, method: Method, start: Start = Start()
 ) -> State:
-    """An integrator that has heard nothing.
+    """An integrator before any report.
 
     Args:
         rig: The viewers' cameras, for the working size; None: a rig of the paper's kind, of two,
             is assumed when a person is seen.
         period_s: Time between frames.
-        settings: Of the run.
-        method: What is done beyond the print.
-        start: What else is known.
+        settings: The run's settings.
+        method: The departures from the print.
+        start: Further knowledge.
     """
     source = start.source or ("assumed" if rig is None else "calibrated")
     proposes = method.proposals and (start.alone or start.by_person or source != "assumed")
@@ -101,7 +101,7 @@ def init(
 
 
 def facing_at_start(cameras: int) -> tuple[Facing, ...]:
-    """What each view is held to see before anything is known: the first alone the facade (P47)."""
+    """Facings of the views before any evidence: the first alone sees the facade (P47)."""
     first: Facing = "facade"
     other: Facing = "flank"
     return (first, *(other,) * (cameras - 1))

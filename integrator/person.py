@@ -1,4 +1,5 @@
-"""The person whom a run follows: their observations at an instant, and the state between two."""
+"""The person followed by a run: their observations at an instant, and their state between
+instants."""
 
 from typing import NamedTuple
 
@@ -52,21 +53,21 @@ class Posed(NamedTuple):
     joints_m: NDArray[np.float64] | None = None
     """(15, 3) world, JOINT_NAMES; None: where the cylinders of the smooth pose end."""
     confidence: Vector | None = None
-    """(15,) how probably each joint is less than 50 mm off; None: as well as the body fits."""
+    """(15,) probability that each joint is less than 50 mm off; None: from the body's fit."""
     memory: Memory | None = None
-    """Of the network that proposed it."""
+    """Memory of the network that proposed it."""
     landmarks: landmark_fusion.Memory | None = None
-    """What is remembered of the views' landmarks."""
+    """Memory of the views' landmarks."""
     alone: Alone | None = None
-    """Where one view alone shows the body."""
+    """Set where one view alone shows the body."""
 
 
 class Waiting(NamedTuple):
-    """No person is followed; what was learnt of the body is kept."""
+    """No person is followed; the body's measurements are kept."""
 
     body: Opening = Unknown()
     ever_confirmed: bool = False
-    """The person who is looked for afresh, as the rig was changed, was believed before."""
+    """A change of the rig restarted the search for a person who was believed before."""
 
     @property
     def found(self) -> None:
@@ -78,15 +79,15 @@ class Waiting(NamedTuple):
 
 
 class Following(NamedTuple):
-    """A person who is followed, as at the last instant."""
+    """A person who is followed, in the state of the last instant."""
 
     body: Known
     found: Posed
     smooth: smoothing.State
     doubted: int = 0
-    """For how many frames they have not been believed."""
+    """Number of frames in a row in which they were not believed."""
     ever_confirmed: bool = False
-    """Whether they were believed since they came."""
+    """Whether they were ever believed."""
 
     @property
     def pose(self) -> Vector:
@@ -94,7 +95,7 @@ class Following(NamedTuple):
         return self.found.pose
 
     def places_m(self, pose: Vector) -> NDArray[np.float64]:
-        """The joints (15, 3) of the last instant, world: as found, or else of a pose."""
+        """The joints (15, 3) of the last instant, world: as found, or else from a pose."""
         if self.found.joints_m is not None:
             return self.found.joints_m
         return np.asarray(joints(body_vector(self.body.bdp), pose))

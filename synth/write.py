@@ -49,16 +49,16 @@ class ClipSet(NamedTuple):
     seed: int = 0
     """The same seed gives the same clips, byte for byte."""
     postures: tuple[str, ...] = POSTURES
-    """Which ones; not asked for when the motion is free or a fall."""
+    """The postures; not requested where the motion is free or a fall."""
     cameras: int = 2
-    """How many, 1 to MOST_CAMERAS."""
+    """Number of cameras, 1 to MOST_CAMERAS."""
 
 
 class Filming(NamedTuple):
-    """By what a motion is recorded."""
+    """The equipment that records a motion."""
 
     rig: Rig
-    """The cameras, by whose names the files and arrays are called."""
+    """The cameras; files and arrays have their names."""
     room_seed: int
     seed: int
     """Seed of people, motion and noise: one seed gives the same clips, byte for byte."""
@@ -73,16 +73,16 @@ def write_set(
     """Clips of several people, with `calibration.json` beside them.
 
     Args:
-        out: Folder, made where it is missing; clips of the same names are replaced.
-        wanted: What they show.
+        out: Folder, created where missing; clips of the same names are replaced.
+        wanted: Content of the clips.
         size: Width and height of the pictures.
-        progress: Told how many clips are done, of how many.
+        progress: Receives the number of finished clips, and of all.
 
     Returns:
         The clips' folders, in order.
 
     Raises:
-        SynthError: When nothing would be written, a posture or the motion is not known, or the
+        SynthError: When nothing would be written, a posture or the motion is unknown, or the
             calibration of other cameras would be lost.
     """
     motion, performers, takes, seed, postures, cameras = wanted
@@ -119,11 +119,11 @@ def write_clip(folder: Path, someone: Person, motion: Motion, filming: Filming, 
     """One clip: cam1.avi, cam2.avi, ... (Motion JPEG), meta.json, truth.npz.
 
     Args:
-        folder: Made where it is missing.
-        someone: Who performs.
-        motion: What they do.
-        filming: By what they are recorded.
-        take: Number of the take, for the notes.
+        folder: Created where missing.
+        someone: The performer.
+        motion: Their motion.
+        filming: The equipment.
+        take: Number of the take, for the metadata.
 
     Raises:
         SynthError: When a video cannot be written there.
@@ -153,8 +153,7 @@ def _rig_text(rig: Rig) -> bytes:
 
 
 def _refuse_to_lose(path: Path, rig: Rig) -> None:
-    """Other clips beside it may have been recorded by the cameras of a calibration that is
-    there."""
+    """An existing calibration may belong to cameras that recorded other clips beside it."""
     if path.exists() and path.read_bytes() != _rig_text(rig):
         raise SynthError(f"{path} is of other cameras, whose clips it serves: name another --out")
 
@@ -206,7 +205,7 @@ def _meta(someone: Person, motion: Motion, filming: Filming, take: int) -> dict[
 
 
 def _truth(someone: Person, motion: Motion, rig: Rig, take: int) -> dict[str, np.ndarray]:
-    """The arrays of `truth.npz` but those that the videos give."""
+    """The arrays of `truth.npz` other than those from the videos."""
     count = len(motion.phase)
     return {
         "joints3d": motion.joints_m.astype(np.float32),
@@ -237,7 +236,7 @@ def _projected(camera: Camera, motion: Motion) -> np.ndarray:
 
 
 def _number(posture: str) -> int:
-    """Its place among the postures, -1 for another motion."""
+    """Index among the postures, -1 for another motion."""
     return POSTURES.index(posture) if posture in POSTURES else -1
 
 

@@ -1,4 +1,4 @@
-"""What processes that are started find in their environment: one thread a library, one heap."""
+"""The environment of started processes: one thread per library, one heap."""
 
 import os
 from collections.abc import Iterator, Mapping
@@ -11,12 +11,14 @@ FRUGAL: Final = {
     "NUMBA_NUM_THREADS": "1",
     "MALLOC_ARENA_MAX": "1",
 }
-"""One thread a library, and one heap for all threads: glibc would make one for each of Zenoh's."""
+"""Variables for one thread per library, and one heap for all threads: glibc would make one for
+each of Zenoh's."""
 
 
 @contextmanager
 def handed_down(variables: Mapping[str, str]) -> Iterator[None]:
-    """Meanwhile processes that are started take these over; afterwards all is as it was."""
+    """Processes started inside this context inherit these variables; afterwards they are
+    restored."""
     before = dict(os.environ)
     os.environ.update(variables)
     try:

@@ -1,4 +1,4 @@
-"""What is asked of the operating system: workers, children, shared pictures, priority."""
+"""The interface to the operating system: workers, children, shared pictures, priority."""
 
 import signal
 import threading
@@ -12,26 +12,27 @@ import numpy as np
 from numpy.typing import NDArray
 
 WARM_S: Final = 20.0
-"""So long a run waits for its launcher at most."""
+"""Longest wait of a run for its launcher, seconds."""
 COMPILED_S: Final = 600.0
-"""So long where all is compiled anew: parts that did so each for itself would take far longer, and
-compile in the midst of the run what they meet there first."""
+"""The same where everything must be compiled: parts that compiled separately would take far
+longer, and would stall during the run at code that they meet there first."""
 Picture = NDArray[np.uint8]
 """(H, W, 3), in memory that a child and its starter share."""
 
 
 class Broken(RuntimeError):
-    """A child died or was stuck, and is gone; the text says how."""
+    """A child died or was stuck, and has been ended; the text says how."""
 
 
 def how_it_ended(code: int) -> str:
-    """The exit code of a process in words; a negative one is the signal that killed it."""
+    """A process's exit code in words; a negative one is the signal that killed it."""
     return f"killed by {signal.Signals(-code).name}" if code < 0 else f"exit code {code}"
 
 
 @contextmanager
 def heeding_sigterm(end: Callable[[], None]) -> Iterator[None]:
-    """Meanwhile SIGTERM calls `end`, where the system sends one; in the main thread alone."""
+    """Inside this context SIGTERM calls `end`, where the system has it; in the main thread
+    alone."""
 
     def heed(_number: int, _frame: FrameType | None) -> None:
         end()
@@ -44,12 +45,12 @@ def heeding_sigterm(end: Callable[[], None]) -> Iterator[None]:
 
 
 class Job(NamedTuple):
-    """What a worker does."""
+    """A worker's job."""
 
     name: str
-    """As `ps` shows it, where the system has names."""
+    """Name in `ps`, where the system has names."""
     main: Callable[..., None]
-    """Called with `arguments`, and last with a Connection on which it may say why it fails."""
+    """Called with `arguments`, and last with a Connection for reporting its error."""
     arguments: tuple[Any, ...]
     nests: bool = False
     """It starts processes of its own."""
@@ -73,43 +74,45 @@ class Worker(Protocol):
         """Wait for its end, or so many seconds."""
 
     def terminate(self) -> None:
-        """Ask it to end (`Platform.asked_to_end`); one that cannot hear that yet ends at once."""
+        """Ask it to end (`Platform.asked_to_end`); one that cannot receive that yet ends at
+        once."""
 
     def kill(self) -> None:
         """End it."""
 
 
 class Started(NamedTuple):
-    """A worker, begun."""
+    """A started worker."""
 
     worker: Worker
     words: Connection
-    """On which its job says why it fails."""
+    """Connection on which its job reports its error."""
 
 
 class Launcher(Protocol):
-    """Where workers begin soonest: it has loaded what they need, where the system allows that."""
+    """Starts workers as fast as possible: where the system allows, it has loaded what they need."""
 
     def wait(self, stop: threading.Event, look: Callable[[], None], most_s: float = WARM_S) -> None:
-        """Until it has loaded that, or takes too long, or `stop` is set; `look` meanwhile.
+        """Wait until that is loaded, or takes too long, or `stop` is set; `look` meanwhile.
 
         Args:
             stop: Ends the wait.
-            look: Called every while.
-            most_s: How long it may take; COMPILED_S where all is compiled anew.
+            look: Called repeatedly.
+            most_s: Longest wait; COMPILED_S where everything must be compiled.
         """
 
     def ready(self) -> bool:
-        """Whether a worker may begin now; asked in the main thread."""
+        """Whether a worker may begin now; called in the main thread."""
 
     def start(self, job: Job) -> Started:
         """Begin a worker."""
 
 
 class Child(Protocol):
-    """A Python module that answers requests with bytes; it has nothing to save, and a kill ends it.
+    """A Python module that answers requests with bytes; it holds nothing to save, and may be
+    killed.
 
-    It ends with its starter, and is deaf to what a terminal says to all processes.
+    It ends with its starter, and ignores a terminal's signals.
     """
 
     @property
@@ -118,7 +121,7 @@ class Child(Protocol):
 
     @property
     def picture(self) -> Picture | None:
-        """Shared with it; None where that was not asked for."""
+        """Shared with it; None where none was requested."""
 
     def ask(self, request: bytes) -> None:
         """Send one line.
@@ -128,57 +131,57 @@ class Child(Protocol):
         """
 
     def read_into(self, buffer: memoryview) -> None:
-        """Fill `buffer`, plain bytes, from what it answers.
+        """Fill `buffer`, plain bytes, with its answer.
 
         Raises:
             Broken: When it died or was stuck before that.
         """
 
     def answers_within(self, wait_s: float) -> bool:
-        """Whether something can be read in time: an answer, or that it died."""
+        """Whether something can be read in time: an answer, or its death."""
 
     def kill(self) -> None:
-        """End it, from any thread; who reads then meets Broken."""
+        """End it, from any thread; a reading thread then gets Broken."""
 
     def close(self) -> None:
-        """End it, and let go of all that is shared with it."""
+        """End it, and release everything shared with it."""
 
 
 class Answers(Protocol):
     """A file of bytes."""
 
     def write(self, answer: bytes | memoryview, /) -> int:
-        """Add to the answer."""
+        """Append to the answer."""
 
     def flush(self) -> None:
         """Send what was written so far."""
 
 
 class Asker(NamedTuple):
-    """The starter of a child, as the child sees it: the argument of its module's `main`."""
+    """A child's starter, as the child sees it: the argument of its module's `main`."""
 
     requests: Iterable[bytes]
-    """A line each; they end only with the child."""
+    """The requests, one line each; they end only with the child."""
     answers: Answers
     picture: Picture | None = None
-    """Shared with the starter; only to be read."""
+    """Shared with the starter; read-only."""
 
 
 class Platform(Protocol):
-    """What the parts of a run ask of the operating system."""
+    """The system services that the parts of a run use."""
 
     def launcher(self, loaded: str) -> Launcher:
-        """Where workers begin soonest.
+        """The launcher of workers.
 
         Args:
-            loaded: A module that imports and compiles what they need as it is imported.
+            loaded: A module whose import imports and compiles what they need.
         """
 
     def start(self, job: Job) -> Started:
-        """Begin a worker as a new Python: one thread a library, deaf to its terminal."""
+        """Begin a worker as a new Python: one thread per library, without terminal signals."""
 
     def asked_to_end(self, end: Callable[[], None]) -> AbstractContextManager[None]:
-        """Meanwhile `end` is called where this process is asked to end."""
+        """Inside this context `end` is called when this process is asked to end."""
 
     def child(
         self, module: str, stall_s: float, picture_size: tuple[int, int] | None = None
@@ -187,9 +190,9 @@ class Platform(Protocol):
 
         Args:
             module: Its `main` is called with an Asker.
-            stall_s: When it gives nothing for so long, it counts as stuck.
-            picture_size: Width and height of the picture that is shared with it, px.
+            stall_s: Seconds without an answer after which it counts as stuck.
+            picture_size: Width and height of the shared picture, px.
         """
 
     def give_way(self, niceness: int) -> None:
-        """Lower the priority of this process, by so much where the system counts it."""
+        """Lower the priority of this process, in the system's steps."""

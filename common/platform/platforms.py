@@ -1,4 +1,4 @@
-"""The platforms by their names, and which of them this process uses."""
+"""The platforms by name, and the one that this process uses."""
 
 import os
 from functools import cache
@@ -9,12 +9,12 @@ from common.config.part_settings import SettingsError
 from common.platform.platform import Platform
 
 CHOICE: Final = "TRITRACK_PLATFORM"
-"""Environment variable that names a platform; processes of a run have it of their starter."""
+"""Environment variable that names a platform; a run's processes inherit it."""
 PLATFORMS: Final = {
     "linux": f"{__package__}.linux.linux_platform",
     "portable": f"{__package__}.portable",
 }
-"""Modules with a PLATFORM, the best first; one that this system lacks cannot be imported."""
+"""Modules with a PLATFORM, best first; one that this system lacks cannot be imported."""
 
 
 @cache
@@ -22,7 +22,7 @@ def platform() -> Platform:
     """The platform that TRITRACK_PLATFORM names, else the first that this system has.
 
     Raises:
-        SettingsError: When there is none of that name, or this system lacks what it needs.
+        SettingsError: When there is none of that name, or this system lacks its requirements.
     """
     asked = os.environ.get(CHOICE, "")
     if asked and asked not in PLATFORMS:

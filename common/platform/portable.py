@@ -14,12 +14,12 @@ from common.platform.portable_worker import EAR, PortableLauncher, spawned
 class PortablePlatform:
     """See `Platform`.
 
-    Each process is spawned, so a program that starts one guards its own work by
-    `if __name__ == "__main__":`, as multiprocessing asks for.
+    Each process is spawned, so a program that starts one must guard its own work by `if __name__ ==
+    "__main__":`, as multiprocessing requires.
     """
 
     def launcher(self, loaded: str) -> Launcher:
-        """Each worker imports for itself; what is not compiled yet is compiled before."""
+        """Each worker imports separately; missing compilation is done before."""
         return PortableLauncher(loaded)
 
     def start(self, job: Job) -> Started:
@@ -28,7 +28,7 @@ class PortablePlatform:
 
     @contextmanager
     def asked_to_end(self, end: Callable[[], None]) -> Iterator[None]:
-        """By the pipe of a worker; by SIGTERM too, where the system sends one."""
+        """By the worker's pipe; by SIGTERM too, where the system has it."""
         with heeding_sigterm(end), EAR.listening(end):
             yield
 
@@ -39,7 +39,7 @@ class PortablePlatform:
         return PortableChild(module, stall_s, picture_size)
 
     def give_way(self, niceness: int) -> None:
-        """By its nice value, or by a class where there are none."""
+        """By its nice value, or by a priority class where there are none."""
         own = psutil.Process()
         own.nice(own.nice() + niceness if psutil.POSIX else psutil.BELOW_NORMAL_PRIORITY_CLASS)
 

@@ -1,4 +1,4 @@
-"""A child that is a spawned process: messages on pipes, a picture in shared memory."""
+"""A child as a spawned process: messages on pipes, a picture in shared memory."""
 
 import io
 import os
@@ -16,7 +16,7 @@ from common.platform.platform import Asker, Broken, Picture, how_it_ended
 from common.platform.spawning import ORPHANED, SPAWN, spawn
 
 END_S: Final = 1.0
-"""How long a child that closed its pipe may take to be gone."""
+"""Time for a child to end after it closed its pipe, seconds."""
 
 
 class PortableChild:
@@ -58,7 +58,7 @@ class PortableChild:
             raise Broken(self._last_words()) from error
 
     def read_into(self, buffer: memoryview) -> None:
-        """Fill `buffer`, plain bytes, from what it answers.
+        """Fill `buffer`, plain bytes, with its answer.
 
         Raises:
             Broken: When it died or was stuck before that.
@@ -72,15 +72,15 @@ class PortableChild:
             buffer, self._left = buffer[count:], self._left[count:]
 
     def answers_within(self, wait_s: float) -> bool:
-        """Whether something can be read in time: an answer, or that it died."""
+        """Whether something can be read in time: an answer, or its death."""
         return bool(self._left) or self._answers.poll(max(0.0, wait_s))
 
     def kill(self) -> None:
-        """End it, from any thread; who reads then meets Broken."""
+        """End it, from any thread; a reading thread then gets Broken."""
         self._process.kill()
 
     def close(self) -> None:
-        """End it and let go of its pipes, and of the picture."""
+        """End it and release its pipes and the picture."""
         self.kill()
         self._process.join()
         self._requests.close()
@@ -135,7 +135,7 @@ def _run(
     answers: Connection,
     shared: tuple[str, tuple[int, int]] | None,
 ) -> None:
-    """Be the child."""
+    """Run the child."""
     silence = os.open(os.devnull, os.O_WRONLY)
     for said in (1, 2):
         os.dup2(silence, said)
@@ -153,7 +153,7 @@ def _run(
 
 
 def _hear(requests: Connection, lines: "SimpleQueue[bytes]") -> None:
-    """Take in what is asked; without an asker this process ends, whatever it does."""
+    """Receive requests; without an asker this process ends, whatever it does."""
     while True:
         try:
             lines.put(requests.recv_bytes())

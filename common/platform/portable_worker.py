@@ -1,4 +1,4 @@
-"""A worker that is a spawned process: a pipe asks it to end, and the pipe's end is its own."""
+"""A worker as a spawned process: a pipe asks it to end, and it ends when the pipe does."""
 
 import os
 import threading
@@ -24,8 +24,8 @@ class PortableWorker:
         """It was started.
 
         Args:
-            process: The one that works.
-            asks: On which it is asked to end.
+            process: Its process.
+            asks: Connection that asks it to end.
         """
         self._process, self._asks = process, asks
 
@@ -58,19 +58,19 @@ class PortableWorker:
 
 
 class Ear:
-    """By which a worker hears that it shall end, and that its starter is gone."""
+    """Receives the request to end, and the end of the starter."""
 
     def __init__(self) -> None:
-        """It does not listen: it ends at once when it is asked to."""
+        """Not receiving yet: the process ends at once when it is asked to."""
         self._end: Callable[[], None] | None = None
 
     def open(self, asks: Connection) -> None:
-        """Hear what is said there from now on."""
+        """Receive from now on."""
         threading.Thread(target=self._hear, args=(asks,), name="ear", daemon=True).start()
 
     @contextmanager
     def listening(self, end: Callable[[], None]) -> Iterator[None]:
-        """Meanwhile `end` is called when this process is asked to end."""
+        """Inside this context `end` is called when this process is asked to end."""
         before, self._end = self._end, end
         try:
             yield
@@ -93,17 +93,17 @@ EAR: Final = Ear()
 
 
 class PortableLauncher:
-    """See `Launcher`: each worker imports for itself, but none compiles."""
+    """See `Launcher`: each worker imports separately, but none compiles."""
 
     def __init__(self, loaded: str) -> None:
-        """Where not all is compiled, a worker that loads the module compiles it from now on."""
+        """Where compilation is missing, a worker that loads the module does it from now on."""
         from common.cache_folder import mark_of_all
 
         job = Job("compiling", _load, (loaded,), nests=True)
         self._compiling: Worker | None = None if mark_of_all().exists() else spawned(job).worker
 
     def wait(self, stop: threading.Event, look: Callable[[], None], most_s: float = WARM_S) -> None:
-        """Until all is compiled, or that takes too long, or `stop` is set."""
+        """Wait until everything is compiled, or that takes too long, or `stop` is set."""
         until_s = time.monotonic() + max(most_s, COMPILED_S)
         while self._compiling is not None and self._compiling.is_alive():
             if stop.wait(LOOK_S) or time.monotonic() > until_s:
@@ -120,7 +120,7 @@ class PortableLauncher:
 
 
 def spawned(job: Job) -> Started:
-    """A worker, begun."""
+    """A started worker."""
     ours, words = SPAWN.Pipe(duplex=False)
     asked, asks = SPAWN.Pipe(duplex=False)
     process = spawn(_run, (job.main, job.arguments, words, asked), job.nests, {**SAFE, **FRUGAL})

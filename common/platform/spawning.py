@@ -1,4 +1,4 @@
-"""A new Python by multiprocessing's public means, deaf to what a terminal says to all processes."""
+"""A new Python by multiprocessing's public means, without a terminal's signals."""
 
 import multiprocessing
 import signal
@@ -12,12 +12,12 @@ from common.platform.environment import handed_down
 
 SPAWN: Final[SpawnContext] = multiprocessing.get_context("spawn")
 ORPHANED: Final = 1
-"""Exit code of a process whose starter died; no process is left to read it."""
+"""Exit code of a process whose starter died; no process reads it."""
 OF_TERMINALS: Final = [
     getattr(signal, name) for name in ("SIGINT", "SIGHUP") if hasattr(signal, name)
 ]
 SAFE: Final = {"PYTHONSAFEPATH": "1"}
-"""A stranger's numpy.py in the working directory is not ours to run."""
+"""Environment variables with which a numpy.py in the working directory does not run."""
 
 
 def spawn(
@@ -29,10 +29,10 @@ def spawn(
     """Begin a process that calls `target`.
 
     Args:
-        target: Found by its name in the new process.
-        arguments: Of the call; they are pickled.
+        target: Imported by name in the new process.
+        arguments: Arguments of the call; they are pickled.
         nests: It starts processes of its own.
-        variables: Of its environment, beside this process's.
+        variables: Additions to this process's environment.
     """
     process = SPAWN.Process(target=target, args=arguments, daemon=not nests)
     with handed_down(variables), _deaf():
@@ -42,8 +42,8 @@ def spawn(
 
 @contextmanager
 def _deaf() -> Iterator[None]:
-    """Meanwhile this process ignores what terminals say, and those that it starts do so for good,
-    also while they import. Only the main thread can arrange that."""
+    """Inside this context this process ignores a terminal's signals; processes that it starts
+    ignore them permanently, even while they import. Only the main thread can do that."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return

@@ -53,14 +53,14 @@ class Measured(NamedTuple):
     measured_at_m: tuple[float, float, float]
     """Place of the navel in the opening posture."""
     measures: tuple[tuple[Measure, Measure], ...] = ()
-    """As of `Unmeasured`; empty of a body that was known before the run."""
+    """As in `Unmeasured`; empty for a body that was known before the run."""
     samples: tuple[Sample, ...] = ()
-    """As of `Unmeasured`, since it was measured."""
+    """As in `Unmeasured`, since it was measured."""
     unsampled: int = 0
 
     @property
     def under_way(self) -> bool:
-        """It is over."""
+        """Its measurement is over."""
         return False
 
 

@@ -1,4 +1,4 @@
-"""A live run: its processes started, listened to, supervised, and ended in order."""
+"""A live run: its processes started, received from, supervised, and ended in order."""
 
 import logging
 import threading
@@ -22,31 +22,31 @@ from runtime.store.recording import Keep
 
 LOOK_S: Final = 0.1
 TRY_S: Final = 0.3
-"""How long each try to reach the integrator lasts."""
+"""Duration of each attempt to reach the integrator, seconds."""
 LAST_WORDS_S: Final = 0.4
-"""What was said last is on its way for no longer than this."""
+"""Longest delay of the last messages, seconds."""
 
 log = logging.getLogger(__name__)
 
 
 class Heard(NamedTuple):
-    """What a run said, as its supervisor heard it."""
+    """The messages of a run, as received by its supervisor."""
 
     bodies: MessageLog[Body]
     postures: MessageLog[Posture]
     pulses: dict[str, Pulse]
     cameras: list[Cameras]
     notes: list[str]
-    """What the supervisor says itself: which part died, and what becomes of it."""
+    """The supervisor's own lines: which part died, and what follows."""
     so_far: SoFar
     keep: Keep | None = None
-    """Takes every report, body, posture and rig, where the run is recorded."""
+    """Receives every report, body, posture and rig, where the run is recorded."""
     journal: Journal | None = None
-    """Takes every body, posture and rig at once."""
+    """Receives every body, posture and rig at once."""
 
 
 def nothing_heard() -> Heard:
-    """Of a run that begins."""
+    """Messages of a new run."""
     return Heard(MessageLog(Body), MessageLog(Posture), {}, [], [], SoFar())
 
 
@@ -58,21 +58,21 @@ def run(
     heard: Heard,
     desk: PageDesk | None = None,
 ) -> None:
-    """Start the parts, listen to them, and end them all when the run is over or stopped.
+    """Start the parts, receive their messages, and end them all when the run is over or stopped.
 
-    A part that dies is started again; the run goes on without a viewer that was given up, as long
-    as another one lives.
+    A part that dies is restarted; the run goes on without a viewer that was given up, as long as
+    another one lives.
 
     Args:
         parts: In the order of their start; they are stopped in the reverse order.
-        settings: Of the run.
+        settings: The run's settings.
         stop: Ends the run early.
-        show: Called ten times a second with what was heard so far.
-        heard: Filled as the run goes, so that a failure loses nothing that was said.
-        desk: Of the page, which runs already and goes on when the run is over.
+        show: Called ten times a second with the messages so far.
+        heard: Filled during the run, so that a failure loses no message.
+        desk: The page's desk; the page runs already and goes on when the run is over.
 
     Raises:
-        PartFailed: When a process fails of itself before it has worked at all, or was given up;
+        PartFailed: When a process fails by its own error before it ever worked, or was given up;
             the others are stopped first.
         BusError: When the integrator cannot be reached.
     """
@@ -117,7 +117,7 @@ def run(
 
 
 def _look_after(crew: Sequence[Watched], heard: Heard) -> None:
-    """Start again what died, and say so; all that is said comes by way of the integrator."""
+    """Restart dead parts, and report it; all messages come through the integrator."""
     hub = next(one for one in crew if one.part.name == "integrator")
     for one in crew:
         told = one.look(time.monotonic(), heard.pulses, reached=one is hub or hub.speaks)
@@ -127,17 +127,17 @@ def _look_after(crew: Sequence[Watched], heard: Heard) -> None:
 
 
 def _over(crew: Sequence[Watched]) -> bool:
-    """Whether every viewer has ended or was given up, or a part that all need was given up."""
+    """Whether every viewer has ended or was given up, or a required part was given up."""
     leads = [one for one in crew if one.part.leads]
     needed = any(one.given_up for one in crew if not (one.part.leads or one.part.spare))
     return needed or all(one.done or one.given_up for one in leads)
 
 
 class Subscriber:
-    """Gathers what is said into a Heard."""
+    """Gathers messages into a Heard."""
 
     def __init__(self, bus: Bus, heard: Heard) -> None:
-        """Listen from now on; the cameras may have been told before."""
+        """Subscribe from now on; the rig may have been published before."""
         self._heard, self._keep = heard, heard.keep
         self._bodies = bus.subscribe(Body)
         self._postures = bus.subscribe(Posture)
@@ -151,12 +151,12 @@ class Subscriber:
 
     @property
     def dropped(self) -> int:
-        """How many reports, bodies and postures never came here."""
+        """Number of reports, bodies and postures that were lost."""
         boxes: tuple[Inbox[Any], ...] = (self._bodies, self._postures, *self._reports)
         return sum(box.dropped for box in boxes)
 
     def catch_up(self) -> None:
-        """Take in all that was said since."""
+        """Process all messages since the last call."""
         said: list[list[Any]] = [box.drain() for box in self._reports]
         bodies, postures, cameras = (
             self._bodies.drain(),
@@ -175,7 +175,7 @@ class Subscriber:
             self._heard.pulses[pulse.process] = pulse
 
     def _record(self, messages: list[Message]) -> None:
-        """Keep these for a replay, as long as the disk takes them: the run goes on without."""
+        """Record messages for a replay, until the disk is full: the run goes on without."""
         if self._keep is None:
             return
         try:
@@ -186,7 +186,7 @@ class Subscriber:
             self._note([f"the recording ends here: it cannot be written ({error.strerror})"])
 
     def _note(self, lines: list[str]) -> None:
-        """Tell what is new among these."""
+        """Print the news among these."""
         self._heard.notes.extend(line for line in lines if line not in self._heard.notes)
 
 
@@ -194,9 +194,9 @@ class Subscriber:
 def _client(
     settings: Settings, stop: threading.Event, look: Callable[[], None]
 ) -> Iterator[Bus | None]:
-    """The supervisor's own place on the bus, as soon as the hub's process has opened it.
+    """The supervisor's own session on the bus, as soon as the hub's process has opened it.
 
-    None when the run was stopped before that; `look` is called between two tries.
+    None when the run was stopped before that; `look` is called between two attempts.
 
     Raises:
         BusError: When it does not open.

@@ -1,1 +1,1 @@
-"""Linux's own way: processes forked of a warm one, shared memory files, pipes, signals."""
+"""Linux's own means: processes forked of a warm one, shared memory files, pipes, signals."""

@@ -1,4 +1,4 @@
-"""A Python module run as a child process: bounded waits, and a word on how it died."""
+"""A Python module as a child process: bounded waits, and a message about its death."""
 
 import contextlib
 import fcntl
@@ -19,18 +19,17 @@ from common.platform.platform import Broken, Picture, how_it_ended
 
 RUN: Final = f"{__package__}.run_child"
 PIPE_BYTES: Final = 1 << 20
-"""How far a child may run ahead of its reader: 18 pictures of 160x120; as much as Linux grants."""
+"""Buffer of a child's pipe, bytes: 18 pictures of 160x120, or as much as Linux grants."""
 
 END_S: Final = 1.0
-"""How long a child that closed its pipe may take to be gone."""
+"""Time for a child to end after it closed its pipe, seconds."""
 
 
 class ChildProcess:
     """A process that answers lines with bytes; see `Child`.
 
-    It gets the number of the pipe that it answers on as its argument, and that of the memory of a
-    picture. What a terminal says to all is not for it, also while it imports: Ctrl-C must not look
-    like a broken video.
+    Its arguments are the numbers of its answer pipe and of the picture's memory. It ignores the
+    terminal's signals, even while it imports: Ctrl-C must not look like a broken video.
     """
 
     def __init__(
@@ -39,7 +38,7 @@ class ChildProcess:
         """Start it; see `Platform.child`."""
         self._stall_s = stall_s
         self.picture: Picture | None = None
-        # A pipe of its own: what libraries print from their import on must not mix with answers.
+        # A pipe of its own: libraries' printed output must not mix with answers.
         read_end, write_end = os.pipe()
         heard, asked = os.pipe()
         self._requests = io.FileIO(asked, "w")
@@ -76,7 +75,7 @@ class ChildProcess:
             raise Broken(self._last_words()) from error
 
     def read_into(self, buffer: memoryview) -> None:
-        """Fill `buffer`, plain bytes, from what it answers.
+        """Fill `buffer`, plain bytes, with its answer.
 
         Raises:
             Broken: When it died or was stuck before that.
@@ -93,15 +92,15 @@ class ChildProcess:
                 raise Broken(f"it gave nothing for {self._stall_s:g} s")
 
     def answers_within(self, wait_s: float) -> bool:
-        """Whether something can be read in time: an answer, or that it died."""
+        """Whether something can be read in time: an answer, or its death."""
         return bool(self._poll.poll(max(0.0, 1000 * wait_s)))
 
     def kill(self) -> None:
-        """End it, from any thread; who reads then meets Broken."""
+        """End it, from any thread; a reading thread then gets Broken."""
         self._process.kill()
 
     def close(self) -> None:
-        """End it and let go of its pipes."""
+        """End it and close its pipes."""
         self.kill()
         self._process.wait()
         self._requests.close()
@@ -127,7 +126,7 @@ def _shared(size: tuple[int, int]) -> tuple[int, Picture]:
 
 
 def _begun(module: str, requests: int, answers: int) -> ForkedChild | subprocess.Popen[bytes]:
-    """The module, forked where there is who forks it and still lives."""
+    """The module, forked where a forking process exists and lives."""
     if can_fork():
         with contextlib.suppress(OSError, EOFError):
             return ForkedChild(module, requests, answers)
@@ -138,7 +137,7 @@ def _executed(
     module: str, requests: int, answers: int, picture: tuple[int, ...] = ()
 ) -> subprocess.Popen[bytes]:
     """The module in a new Python, given the memory, height and width of a picture."""
-    # -P: a stranger's numpy.py in the working directory is not ours to run.
+    # -P: another numpy.py in the working directory must not run.
     return subprocess.Popen(
         [sys.executable, "-P", "-m", RUN, module, *map(str, (answers, *picture))],
         stdin=requests,

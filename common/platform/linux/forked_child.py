@@ -1,6 +1,7 @@
-"""A child process that is forked of what this one was forked of: it begins loaded, and shares that.
+"""A child process forked of the process that this one was forked of: it starts loaded, and shares
+memory.
 
-Where this process is a part of a run, its zygote (`zygote.py`) is there to fork others too: a
+Where this process is a part of a run, its zygote (`zygote.py`) exists and can fork others too: a
 process with threads must not fork itself.
 """
 
@@ -18,7 +19,7 @@ FORK: Final = multiprocessing.get_context("forkserver")
 
 
 class ForkedChild:
-    """A Python module run by a fork; to its starter what `subprocess.Popen` of it would be."""
+    """A Python module in a fork, with the interface of `subprocess.Popen` for its starter."""
 
     def __init__(self, module: str, requests: int, answers: int) -> None:
         """Start it.
@@ -26,7 +27,7 @@ class ForkedChild:
         Args:
             module: See `run_child.run`.
             requests: Open file that becomes its standard input.
-            answers: Open file that it answers on.
+            answers: Open file for its answers.
         """
         files = Connection(os.dup(requests), writable=False), Connection(os.dup(answers))
         self._process = FORK.Process(target=_run, args=(module, *files), daemon=True)
@@ -54,8 +55,8 @@ class ForkedChild:
 def can_fork() -> bool:
     """Whether this process was forked of one that forks others too, and may have children.
 
-    Where it has begun no server of forks itself, multiprocessing would begin one, as it looks for
-    no other: that of its own birth serves as well, and with it this process would die.
+    A process without a fork server of its own would start one, because multiprocessing looks for no
+    other: the server that forked it serves as well, and a new one would end this process with it.
     """
     if forkserver.get_inherited_fds() is None or multiprocessing.current_process().daemon:
         return False
@@ -66,7 +67,7 @@ def can_fork() -> bool:
 
 
 def _run(module: str, requests: Connection, answers: Connection) -> None:
-    os.setpgrp()  # what is said to all of a run's group is not for it
+    os.setpgrp()  # the signals of a run's group are not for it
     hear_sigterm()
     silence = os.open(os.devnull, os.O_WRONLY)
     for said in (1, 2):

@@ -1,4 +1,4 @@
-"""A worker's process: begun as a fork or as a new Python, frugal, deaf to its terminal."""
+"""A worker's process: a fork or a new Python, with few threads, without terminal signals."""
 
 import multiprocessing
 import signal
@@ -22,8 +22,8 @@ def begun(job: Job, forked: bool) -> Started:
     """A worker, begun.
 
     Args:
-        job: What it does.
-        forked: Of the zygote, which must be there; else it is a new Python.
+        job: Its job.
+        forked: Fork it of the zygote, which must exist; otherwise it is a new Python.
 
     Raises:
         EOFError, OSError: When the zygote dies meanwhile.
@@ -44,20 +44,20 @@ def begun(job: Job, forked: bool) -> Started:
 
 @contextmanager
 def inherited() -> Iterator[None]:
-    """What a process takes over from its supervisor: one thread a library, one heap, deaf to its
-    terminal.
+    """Settings that a process inherits from its supervisor: one thread per library, one heap, no
+    terminal signals.
 
-    A terminal sends Ctrl-C, and word of its own end, to all processes; only the supervisor, who
-    ends the others in order, shall hear that, also while they are still importing.
+    A terminal sends Ctrl-C and SIGHUP to all processes. Only the supervisor, which ends the others
+    in order, may receive them, even while the others are still importing.
     """
     heard = signal.pthread_sigmask(signal.SIG_BLOCK, OF_TERMINALS)
     try:
         with handed_down(FRUGAL):
-            resource_tracker.ensure_running()  # deaf as well; its start lifts the block of SIGINT
+            resource_tracker.ensure_running()  # blocked as well; its start unblocks SIGINT
             signal.pthread_sigmask(signal.SIG_BLOCK, OF_TERMINALS)
             yield
     finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, heard)  # the run of a site is deaf itself
+        signal.pthread_sigmask(signal.SIG_SETMASK, heard)  # a site's run blocks them itself
 
 
 def _run(

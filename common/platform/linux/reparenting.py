@@ -1,8 +1,8 @@
-"""Parts that are forked of a zygote and become children of the supervisor whose zygote that is.
+"""Parts that are forked of a zygote and become children of the supervisor that owns it.
 
-A fork ends with who forked it, and only that process learns how it ended. So the fork of a zygote
-forks once more and is gone: Linux gives the orphan to its next ancestor that takes such in. The
-zygote may die then without a part noticing.
+A fork ends with its parent, and only the parent learns how it ended. So the zygote's fork forks
+once more and exits: Linux gives the orphan to its next ancestor that adopts orphans. The zygote may
+then die without affecting a part.
 """
 
 import ctypes
@@ -16,21 +16,22 @@ from multiprocessing.process import BaseProcess
 from typing import Final
 
 PR_SET_CHILD_SUBREAPER: Final = 36
-"""prctl(2): orphans among who descends from this process become its children."""
+"""prctl(2): orphaned descendants of this process become its children."""
 BORN_S: Final = 20.0
-"""A fork that has not said its number by then never will."""
+"""Time for a fork to report its number, seconds."""
 LOOK_S: Final = 0.005
 
 
 class ReparentedProcess:
-    """A child that another process forked; to its supervisor what multiprocessing's would be."""
+    """A child that another process forked, with the interface of multiprocessing's for its
+    supervisor."""
 
     def __init__(self, pid: int, born: BaseProcess | None = None) -> None:
-        """It lives, or its end has not been asked for.
+        """It lives, or its exit code has not been read.
 
         Args:
             pid: Its number.
-            born: Who left it behind; its pipe, of which the child sees the end, is kept open.
+            born: The process that forked it; its pipe, whose end the child sees, is kept open.
         """
         self.pid = pid
         self._born = born
@@ -40,7 +41,7 @@ class ReparentedProcess:
     def exitcode(self) -> int | None:
         """None while it lives; negative the signal that killed it."""
         if self._code is None:
-            with suppress(ChildProcessError):  # who left it behind is not gone yet
+            with suppress(ChildProcessError):  # its parent has not exited yet
                 number, status = os.waitpid(self.pid, os.WNOHANG)
                 self._code = os.waitstatus_to_exitcode(status) if number else None
         return self._code
@@ -64,15 +65,15 @@ class ReparentedProcess:
         self._tell(signal.SIGKILL)
 
     def _tell(self, number: signal.Signals) -> None:
-        if self.is_alive():  # until its end is asked for its number is nobody else's
+        if self.is_alive():  # its number stays reserved until its exit code is read
             os.kill(self.pid, number)
 
 
 @contextmanager
 def adopting() -> Iterator[None]:
-    """Meanwhile orphans among who descends from this process become its children.
+    """Inside this context orphaned descendants become this process's children.
 
-    Not for longer: a decoder whose zygote dies is left to the machine's first process.
+    Not outside it: a decoder whose zygote dies goes to the machine's first process.
     """
     prctl = ctypes.CDLL(None).prctl
     try:
@@ -83,15 +84,16 @@ def adopting() -> Iterator[None]:
 
 
 def adopted(born: BaseProcess, words: Connection) -> ReparentedProcess:
-    """The part that a zygote's fork leaves behind; `adopting` since before that was started.
+    """The part that a zygote's fork leaves behind; this process has been `adopting` since before
+    that fork.
 
     Args:
         born: The zygote's fork.
-        words: On which it says the part's number.
+        words: Connection with the part's number.
 
     Raises:
-        EOFError: When it died before it said that.
-        TimeoutError: When it did not say it in time; it is killed.
+        EOFError: When the fork died before it sent that.
+        TimeoutError: When it did not send it in time; it is killed.
     """
     if not words.poll(BORN_S):
         born.kill()
@@ -102,12 +104,13 @@ def adopted(born: BaseProcess, words: Connection) -> ReparentedProcess:
 
 
 def be_adopted(words: Connection) -> None:
-    """Go on as the child of who started this process, of which it is no fork, and is `adopting`.
+    """Continue as a child of the process that started this one, of which it is no fork, and which
+    is `adopting`.
 
     No thread may have begun.
 
     Args:
-        words: On which the number is said that this process has from then on.
+        words: Connection on which the process sends its new number.
     """
     before = os.getpid()
     pid = os.fork()

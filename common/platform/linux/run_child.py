@@ -1,4 +1,4 @@
-"""What a child is begun by: `python -m common.platform.linux.run_child MODULE PIPE [PICTURE]`.
+"""Start of a child: `python -m common.platform.linux.run_child MODULE PIPE [PICTURE]`.
 
 PICTURE: number of its open memory, height, width. Requests come on the standard input.
 """
@@ -13,11 +13,11 @@ from common.platform.platform import Asker, Picture
 
 
 def run(module: str, answers: int, picture: Picture | None = None) -> None:
-    """Let a module answer what comes on the standard input, until nobody can ask any more.
+    """Let a module answer requests on the standard input, until its asker is gone.
 
     Args:
         module: Its `main` is called with the Asker.
-        answers: Number of the open file that it answers on.
+        answers: Number of the open file for its answers.
         picture: Shared with the asker.
     """
     be_shown_as(module.rpartition(".")[2])
@@ -27,7 +27,7 @@ def run(module: str, answers: int, picture: Picture | None = None) -> None:
 
 
 def picture_of(memory: int, height: int, width: int) -> Picture:
-    """The picture in a memory, only to be read."""
+    """The picture in a memory, read-only."""
     import numpy as np
 
     shared = mmap.mmap(memory, 3 * width * height, access=mmap.ACCESS_READ)

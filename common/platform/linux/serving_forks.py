@@ -1,7 +1,7 @@
-"""A zygote's own side: it forks from now on, and ends with the process that started it.
+"""The zygote's own code: it forks from now on, and ends with the process that started it.
 
-Imported by the zygote alone, first of all, and the work is done as it is imported: multiprocessing
-gives its server no other moment. Its forks know by this module that they are forks.
+Only the zygote imports this module, first of all, and the import does the work: multiprocessing
+gives its server no other hook. Its forks recognise themselves as forks by this module.
 """
 
 import os
@@ -14,10 +14,10 @@ from common.platform.linux.own_process import end_with
 
 
 def begin(starter: int) -> None:
-    """Fork from now on, and end with who started this process, by its number, not before.
+    """Fork from now on, and end with the starter, given by number, not before.
 
-    SIGTERM waits in each fork until that can heed it: sent to all processes of a service, as by
-    systemd, it must not end who forks, and all forks with it.
+    SIGTERM stays blocked in each fork until it can handle it: sent to all processes of a service,
+    as by systemd, it must not end the zygote, and all forks with it.
     """
     signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGTERM,))
     end_with(starter)

@@ -1,11 +1,11 @@
-"""The zygote: a process with everything imported and compiled, of which a run's parts are forked.
+"""The zygote: a process with everything imported and compiled, which forks a run's parts.
 
-A fork works within milliseconds, where a process of its own imports and loads for seconds, and
-shares with the others what it does not change. The zygote opens no door and begins no thread. When
-it dies its forks live on (`reparenting.py`), and the next that is started brings up another one.
+A fork works within milliseconds, while a new process imports and loads for seconds; a fork also
+shares unchanged memory with the others. The zygote opens no sockets and starts no threads. When it
+dies its forks live on (`reparenting.py`), and the next start of a part begins a new zygote.
 
-A process that was itself forked of a zygote, as that of a site is, has its own zygote by one fork
-more: all rooms of a machine share what was loaded once.
+A process that was itself forked of a zygote, as a site's is, gets its own zygote by another fork:
+all rooms of a machine share what was loaded once.
 """
 
 import logging
@@ -25,7 +25,7 @@ from common.platform.linux.part_process import begun, inherited
 from common.platform.platform import COMPILED_S, WARM_S, Job, Started
 
 SERVING: Final = f"{__package__}.serving_forks"
-"""Imported first: what is loaded takes seconds, in which this process may die."""
+"""Imported first: loading takes seconds, in which this process may die."""
 LOOK_S: Final = 0.05
 
 log = logging.getLogger(__name__)
@@ -35,7 +35,7 @@ class Zygote:
     """The zygote of this process: one for all its runs."""
 
     def __init__(self, loaded: str) -> None:
-        """Started now, in the main thread: Linux takes the end of that for this process's.
+        """Started now, in the main thread: Linux takes that thread's end for this process's.
 
         Args:
             loaded: The module that it imports.
@@ -43,7 +43,7 @@ class Zygote:
         self._coming, self._loaded = False, loaded
         FORK.set_forkserver_preload([SERVING, begun.__module__, loaded])
         self.warm = is_forked()
-        """Whether a worker is forked, and not a new Python."""
+        """Whether workers are forked, and not new Pythons."""
         try:
             with _forked() if self.warm else nullcontext():
                 self._begun()
@@ -54,14 +54,14 @@ class Zygote:
             self._expect()
 
     def start(self, job: Job) -> Started:
-        """Begin a worker: forked where this is warm, else a new Python."""
+        """Begin a worker: forked where the zygote is warm, else a new Python."""
         if self.warm:
-            with suppress(EOFError, OSError):  # the zygote dies at this moment
+            with suppress(EOFError, OSError):  # the zygote died just now
                 return begun(job, forked=True)
         return begun(job, forked=False)
 
     def wait(self, stop: threading.Event, look: Callable[[], None], most_s: float = WARM_S) -> None:
-        """Until it is warm, or that takes too long, or the run shall end; `look` meanwhile."""
+        """Wait until it is warm, or that takes too long, or the run shall end; `look` meanwhile."""
         until_s = time.monotonic() + (most_s if mark_of_all().exists() else COMPILED_S)
         while self._coming and not (self.warm or stop.wait(LOOK_S)):
             if time.monotonic() > until_s:
@@ -70,10 +70,10 @@ class Zygote:
             look()
 
     def ready(self) -> bool:
-        """Whether a process may begin now; asked in the main thread.
+        """Whether a process may begin now; called in the main thread.
 
-        A zygote that died is begun anew: who asks again and again need not stand still until it is
-        warm, as who starts a process at once does.
+        A dead zygote is begun again: a caller that asks repeatedly need not wait until it is warm,
+        unlike one that starts a process at once.
         """
         if self.warm and self._begun():
             self.warm = False
@@ -81,7 +81,7 @@ class Zygote:
         return self.warm or not self._coming
 
     def _begun(self) -> bool:
-        """See that it runs; whether it did not."""
+        """Ensure that it runs; whether it did not."""
         server: Any = forkserver._forkserver
         before = server._forkserver_pid
         with inherited():
@@ -97,9 +97,9 @@ class Zygote:
         threading.Thread(target=self._await, name="zygote", daemon=True).start()
 
     def _await(self) -> None:
-        """Its first fork is there as soon as it is warm, and says whether it is."""
+        """Its first fork exists as soon as it is warm, and reports that."""
         first = FORK.Process(target=_tell, args=(self._loaded,), daemon=True)
-        with suppress(EOFError, OSError):  # it died: who needs it does without
+        with suppress(EOFError, OSError):  # it died: workers are new Pythons then
             first.start()
             first.join()
             self.warm = first.exitcode == 0
@@ -113,7 +113,8 @@ def is_forked() -> bool:
 
 @contextmanager
 def _forked() -> Iterator[None]:
-    """Meanwhile multiprocessing's server begins as a fork of this process, not as a new Python."""
+    """Inside this context multiprocessing's server begins as a fork of this process, not as a
+    new Python."""
     begun = util.spawnv_passfds
     util.spawnv_passfds = lambda path, args, passfds: _fork(passfds)  # noqa: ARG005
     try:
@@ -126,7 +127,7 @@ def _fork(passed: Sequence[int]) -> int:
     """A fork of this process that serves forks, given the files of multiprocessing's server; its
     number.
 
-    No library may have begun a thread: forks would lack it.
+    No library may have started a thread: forks would lack it.
     """
     starter = os.getpid()
     number = os.fork()
@@ -141,6 +142,7 @@ def _tell(loaded: str) -> None:
 
 
 def _same_modules() -> dict[str, str]:
-    """What lets another Python import what this one does, and no file of the working directory."""
+    """Arguments with which another Python imports the same modules, and no file of the working
+    directory."""
     paths = os.pathsep.join(path or os.getcwd() for path in sys.path)
     return {"PYTHONSAFEPATH": "1", "PYTHONPATH": paths}
