@@ -46,7 +46,7 @@ from common.config.config_file import load
 from common.method import METHODS
 from common.rig.camera import Rig
 from common.video.clips import open_clip
-from common.video.frame_cache import Reel
+from common.video.frame_cache import FrameCache
 from integrator import commands, diagnostics, merge, merge_state, pairing
 from integrator.frame_numbers import frame_times
 from integrator.merge_state import Start
@@ -85,8 +85,8 @@ def honest(path: Path) -> Honest:
         )
         clip = open_clip(settings, decoders.of[1])
         assert clip.rig is not None, f"{path} has no calibration"
-        reels = {view.number: Reel(decoders.of[view.number]) for view in clip.views}
-        background = openings(clip, settings.silhouette, reels)[0].background
+        frame_caches = {view.number: FrameCache(decoders.of[view.number]) for view in clip.views}
+        background = openings(clip, settings.silhouette, frame_caches)[0].background
     setup = track.Setup(1, clip.rig.cameras[0], settings, method, alone=False)
     viewer = track.init(setup, background)
     start = Start(alone=False, times=frame_times(clip))

@@ -24,7 +24,7 @@ from common.config import config_file
 from common.method import METHODS
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
-from common.video.frame_cache import Reel
+from common.video.frame_cache import FrameCache
 from common.video.pictures import Reader
 from runtime.offline.rig_from_person import sighting_of
 from synth.motion.motions import performance
@@ -55,7 +55,7 @@ def looked_at(paths: list[Path], size: str) -> Iterator[Shown]:
         for path in paths:
             settings = msgspec.structs.replace(config_file.load(path), size=size)
             clip = open_clip(settings)
-            readers = {view.number: Reel(decoders[view.number - 1]) for view in clip.views}
+            readers = {view.number: FrameCache(decoders[view.number - 1]) for view in clip.views}
             with outside_sources(settings, clip.views) as sources:
                 method = METHODS["default"]
                 yield Shown(path.name, sighting_of(clip, settings, method, readers, sources))

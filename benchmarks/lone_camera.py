@@ -29,10 +29,10 @@ from common.method import METHODS
 from common.rig.camera import Camera
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
-from common.video.frame_cache import Reel
+from common.video.frame_cache import FrameCache
 from lab.accuracy.accuracy import compare, picked, summary
 from runtime.live.table import table_of_rows
-from runtime.offline.film_tracking import Film, follow_clip
+from runtime.offline.video_tracking import VideoInput, follow_clip
 from runtime.overrides import overridden
 from runtime.store.pose_arrays import poses
 from viewer.room.background_source import background_of_film
@@ -77,8 +77,8 @@ def main() -> None:
             assert clip.rig is not None, f"{path} has no calibration to hold the truth against"
             camera, width = clip.rig.cameras[0], clip.views[0].size[0]
             clip = clip if given.calibrated else msgspec.structs.replace(clip, rig=None)
-            background = background_of_film(clip.views[0], settings.silhouette, Reel(decoder))
-            film, method = Film(clip, background), METHODS[settings.mode]
+            background = background_of_film(clip.views[0], settings.silhouette, FrameCache(decoder))
+            film, method = VideoInput(clip, background), METHODS[settings.mode]
             found = poses(follow_clip(film, settings, method, decoder).bodies)
             rows.append(row_of(path, camera, found, width))
     weights = np.array([row["limb-frames"] for row in rows])

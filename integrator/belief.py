@@ -33,7 +33,7 @@ TURNED_DEG: Final = 100.0
 NOBODY: Final = 0.3
 """Mean confidence of the landmarks below which they show no person: 0.53 at least in two
 performers' frames, 0.39 in those of synthetic people in free motion (docs/measurements.md)."""
-UNTOLD_SCORE: Final = 0.45
+UNTRUSTED_SCORE: Final = 0.45
 """Smallest S in each view where no view's landmarks are trusted: it is 0.6 in 99 % of two
 performers' frames (docs/measurements.md)."""
 
@@ -114,8 +114,8 @@ def is_believed(
     unsure = [person.landmarks for person, _, _ in views if person.landmarks is not None]
     if len(unsure) < len(views):
         return True
-    somebody = max(_sure(landmarks) for landmarks in unsure) >= NOBODY
-    return somebody and min(score for _, _, score in views) >= UNTOLD_SCORE
+    shows_person = max(_sure(landmarks) for landmarks in unsure) >= NOBODY
+    return shows_person and min(score for _, _, score in views) >= UNTRUSTED_SCORE
 
 
 def _is_trusted(found: Landmarks) -> bool:

@@ -38,7 +38,7 @@ def film_of(video: Path) -> Film:
         film.append(frame)
 
 
-def write_film(video: Path, film: Sequence[np.ndarray], fps: float = 15.0) -> None:
+def write_video(video: Path, film: Sequence[np.ndarray], fps: float = 15.0) -> None:
     height, width = film[0].shape[:2]
     writer = cv2.VideoWriter(str(video), cv2.VideoWriter.fourcc(*"MJPG"), fps, (width, height))
     for frame in film:
@@ -60,7 +60,7 @@ def write_uneven(video: Path, film: Sequence[np.ndarray], ticks: Sequence[int], 
 def refilmed(folder: Path, change: Callable[[Film], Film], cameras: Sequence[int] = (1, 2)) -> None:
     for number in cameras:
         video = folder / f"cam{number}.avi"
-        write_film(video, change(film_of(video)))
+        write_video(video, change(film_of(video)))
 
 
 def edit_json(path: Path, change: Callable[[dict[str, Any]], object]) -> None:

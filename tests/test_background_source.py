@@ -8,7 +8,7 @@ import cv2
 import msgspec
 import numpy as np
 import pytest
-from spoiling import Film, copied, film_of, refilmed, write_film
+from spoiling import Film, copied, film_of, refilmed, write_video
 
 from common.body.body import JOINT_NAMES
 from common.body.observation import Landmarks
@@ -109,7 +109,7 @@ def test_a_plate_goes_before_the_clip(clip: Path, decoder: Decoder, tmp_path: Pa
 
 def test_a_plate_may_be_a_film_and_larger(clip: Path, decoder: Decoder, tmp_path: Path) -> None:
     larger = cv2.resize(room_of(clip).astype(np.uint8), (320, 240), interpolation=cv2.INTER_NEAREST)
-    write_film(tmp_path / "plate.avi", 8 * [larger])
+    write_video(tmp_path / "plate.avi", 8 * [larger])
     camera = CameraSettings(background=str(tmp_path / "plate.avi"))
     room, odd, _ = opening_of_view(view_of(clip, decoder, camera), SilhouetteSettings(), decoder)
     assert odd == ""

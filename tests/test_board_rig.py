@@ -21,7 +21,7 @@ from calibration.board.board_rig import (
     calibrated_by_board,
 )
 from calibration.board.lens_start import Place
-from calibration.board.still_board import Film, Moments
+from calibration.board.still_board import BoardVideo, Moments
 from common.body.body import Vector
 from common.rig.camera import centre, project
 from common.rig.rig_file import CalibrationError
@@ -31,7 +31,7 @@ LOOKS = 3
 """While the board is held; one more while it is away."""
 
 
-def exact_films(rig: FilmedRig, noise_px: float, seed: int = 1) -> list[Film]:
+def exact_films(rig: FilmedRig, noise_px: float, seed: int = 1) -> list[BoardVideo]:
     """What both cameras show, without pictures: of each pose some looks."""
     random = np.random.default_rng(seed)
     films = []
@@ -47,18 +47,18 @@ def exact_films(rig: FilmedRig, noise_px: float, seed: int = 1) -> list[Film]:
             for look in range(LOOKS if np.isfinite(seen[:, 0]).sum() >= 6 else 0):
                 times.append((n * (LOOKS + 1) + look) / 5)
                 px.append(seen + random.normal(0, noise_px, seen.shape))
-        films.append(Film(f"{camera.name}.avi", rig.size, np.array(times), np.array(px)))
+        films.append(BoardVideo(f"{camera.name}.avi", rig.size, np.array(times), np.array(px)))
     return films
 
 
-def filmed(rig: FilmedRig, seed: int) -> list[Film]:
+def filmed(rig: FilmedRig, seed: int) -> list[BoardVideo]:
     """What is found in made-up pictures."""
     films = []
     for n, camera in enumerate(rig.cameras):
         found = [corners_in(one, rig.board) for one in pictures_of(rig, n, seed + n, LOOKS)]
         times = np.array([k / 5 for k, px in enumerate(found) if px is not None])
         px = np.array([one for one in found if one is not None])
-        films.append(Film(f"{camera.name}.avi", rig.size, times, px))
+        films.append(BoardVideo(f"{camera.name}.avi", rig.size, times, px))
     return films
 
 
@@ -174,7 +174,7 @@ def test_the_floor_is_told_by_a_time_at_which_the_board_rests() -> None:
 
 
 def test_films_that_show_too_little_or_another_board_are_named() -> None:
-    one = Film("left.avi", (640, 480), np.arange(31.0), np.zeros((31, 6, 2)))
+    one = BoardVideo("left.avi", (640, 480), np.arange(31.0), np.zeros((31, 6, 2)))
     _refuse_few(one, 8)
     with pytest.raises(CalibrationError, match=r"left\.avi .* in 31 of .* at rest 7 times, 8 or"):
         _refuse_few(one, 7)

@@ -9,12 +9,12 @@ from common.config.settings import Settings
 from common.video.clip_sources import (
     NOTHING,
     ClipError,
-    Footage,
+    ViewSource,
     companions_folder,
     first_camera,
-    footage_of,
     numbers_of,
-    refuse_no_footage,
+    refuse_no_source,
+    sources_of,
 )
 
 
@@ -30,22 +30,28 @@ def folder(tmp_path: Path) -> Path:
 def test_a_folder_names_both_and_a_views_own_source_goes_before_it(folder: Path) -> None:
     plain, whole = CameraSettings(), Settings(clip=str(folder))
     one, two = str(folder / "cam1.avi"), str(folder / "cam2.MKV")
-    assert footage_of(whole) == [Footage(1, one, plain, "cam1"), Footage(2, two, plain, "cam2")]
+    assert sources_of(whole) == [
+        ViewSource(1, one, plain, "cam1"),
+        ViewSource(2, two, plain, "cam2"),
+    ]
     own, device = CameraSettings(source="x.mp4"), CameraSettings(device=0)
     mixed = Settings(clip=str(folder), cameras={"cam1": own, "cam2": device})
-    assert footage_of(mixed) == [Footage(1, "x.mp4", own, "cam1"), Footage(2, 0, device, "cam2")]
+    assert sources_of(mixed) == [
+        ViewSource(1, "x.mp4", own, "cam1"),
+        ViewSource(2, 0, device, "cam2"),
+    ]
     named = CameraSettings(calibrated_as="left")
-    assert footage_of(Settings(clip=str(folder), cameras={"cam2": named}))[1] == Footage(
+    assert sources_of(Settings(clip=str(folder), cameras={"cam2": named}))[1] == ViewSource(
         2, two, named, "cam2"
     )
 
 
 def test_a_view_without_a_source_is_left_out(folder: Path) -> None:
     camera = CameraSettings(device=3)
-    assert footage_of(Settings(cameras={"cam2": camera})) == [Footage(2, 3, camera, "cam2")]
-    assert footage_of(Settings()) == []
+    assert sources_of(Settings(cameras={"cam2": camera})) == [ViewSource(2, 3, camera, "cam2")]
+    assert sources_of(Settings()) == []
     (folder / "cam1.avi").unlink()
-    assert [view.number for view in footage_of(Settings(clip=str(folder)))] == [2]
+    assert [view.number for view in sources_of(Settings(clip=str(folder)))] == [2]
 
 
 def test_what_is_no_clip_is_refused_by_its_name(folder: Path) -> None:
@@ -58,23 +64,23 @@ def test_what_is_no_clip_is_refused_by_its_name(folder: Path) -> None:
         (folder / "cam2.d", "cam2.d has neither cam1.* nor cam2.*: name the videos so"),
     ):
         with pytest.raises(ClipError, match=said):
-            footage_of(Settings(clip=str(clip)))
+            sources_of(Settings(clip=str(clip)))
     (folder / "cam2.avi").touch()
     with pytest.raises(ClipError, match=r"has 2 videos of cam2 \(cam2\.MKV, cam2\.avi\): keep"):
-        footage_of(Settings(clip=str(folder)))
+        sources_of(Settings(clip=str(folder)))
 
 
 def test_settings_that_name_nothing_are_refused_by_their_file(folder: Path) -> None:
     with pytest.raises(ClipError, match=rf"^room\.toml: {NOTHING}$"):
-        refuse_no_footage(Settings(), Path("room.toml"))
-    refuse_no_footage(Settings(clip=str(folder)), Path("room.toml"))
-    refuse_no_footage(Settings(cameras={"cam2": CameraSettings(device=0)}), Path("room.toml"))
+        refuse_no_source(Settings(), Path("room.toml"))
+    refuse_no_source(Settings(clip=str(folder)), Path("room.toml"))
+    refuse_no_source(Settings(cameras={"cam2": CameraSettings(device=0)}), Path("room.toml"))
 
 
 def test_what_goes_with_the_videos_lies_in_the_clip_or_beside_the_first_file() -> None:
     camera = CameraSettings()
     sources = (0, "b/two.avi", "c/x.avi")
-    named = [Footage(1, source, camera, "cam1") for source in sources]
+    named = [ViewSource(1, source, camera, "cam1") for source in sources]
     assert companions_folder(Settings(clip="a"), named) == Path("a")
     assert companions_folder(Settings(), named) == Path("b")
     assert companions_folder(Settings(), named[:1]) == Path()
@@ -83,17 +89,17 @@ def test_what_goes_with_the_videos_lies_in_the_clip_or_beside_the_first_file() -
 def test_a_folder_has_up_to_eight_cameras(tmp_path: Path) -> None:
     for n in range(8, 0, -1):
         (tmp_path / f"cam{n}.mp4").touch()
-    found = footage_of(Settings(clip=str(tmp_path)))
+    found = sources_of(Settings(clip=str(tmp_path)))
     assert [(one.number, one.name) for one in found] == [(n, f"cam{n}") for n in range(1, 9)]
     (tmp_path / "cam9.mp4").touch()
     with pytest.raises(ClipError, match=r"has cam9\.mp4: a clip has 8 cameras at most"):
-        footage_of(Settings(clip=str(tmp_path)))
+        sources_of(Settings(clip=str(tmp_path)))
 
 
 def test_cameras_of_any_name_are_numbered_in_their_order() -> None:
     left, right = CameraSettings(source="l.avi"), CameraSettings(device=1)
-    found = footage_of(Settings(cameras={"left": left, "right": right}))
-    assert found == [Footage(1, "l.avi", left, "left"), Footage(2, 1, right, "right")]
+    found = sources_of(Settings(cameras={"left": left, "right": right}))
+    assert found == [ViewSource(1, "l.avi", left, "left"), ViewSource(2, 1, right, "right")]
 
 
 @pytest.mark.parametrize(
@@ -114,14 +120,14 @@ def test_who_is_called_by_a_number_has_it_and_others_take_what_is_free(
 def test_a_ninth_camera_is_refused_by_name(folder: Path) -> None:
     seven = {f"c{n}": CameraSettings(device=n) for n in range(7)}
     with pytest.raises(ClipError, match=r"9 cameras \(c0, .*, cam1, cam2\): keep 8 at most"):
-        footage_of(Settings(clip=str(folder), cameras=seven))
+        sources_of(Settings(clip=str(folder), cameras=seven))
 
 
 def test_a_named_camera_without_a_video_is_refused(folder: Path) -> None:
     """A clip folder has none of that name to give."""
     plate = {"left": CameraSettings(background="empty.png")}
     with pytest.raises(ClipError, match=r"^cameras\.left has neither source nor device"):
-        footage_of(Settings(clip=str(folder), cameras=plate))
+        sources_of(Settings(clip=str(folder), cameras=plate))
 
 
 def test_the_first_camera_is_that_of_number_1() -> None:

@@ -13,7 +13,7 @@ import pytest
 
 from common.platform.platform import Asker
 from common.video import decoder
-from common.video.decoder import Grabbed, OpenFilm, Refused, grabs, judged, opened, say
+from common.video.decoder import Grabbed, OpenVideo, Refused, grabs, judged, opened, say
 from common.video.decoding import DAMAGED, END, FRAME, HEADER, INFO, MAGIC, REFUSED, SKIPPED, TIMES
 from common.video.pictures import Image, Source
 from common.video.reduction import reduced
@@ -85,9 +85,9 @@ def served(
 ) -> list[tuple[bytes, int, float, bytes]]:
     """What is answered of a film of 29.5 pictures a second that claims 7."""
 
-    def film(source: Source, every: int, start: int, _: object) -> OpenFilm:
+    def film(source: Source, every: int, start: int, _: object) -> OpenVideo:
         assert (source, every, start) == ("a.avi", asked.get("every", 1), asked.get("start", 0))
-        return OpenFilm(29.5, 7, iter(taken))
+        return OpenVideo(29.5, 7, iter(taken))
 
     answers = Answers()
     monkeypatch.setattr(decoder, "opened", film)
@@ -217,7 +217,7 @@ def test_of_each_hundredth_frame_that_is_passed_over_the_asker_hears(
 
 def test_a_sign_of_life_does_not_wait(monkeypatch: pytest.MonkeyPatch) -> None:
     taken = [Grabbed(0, 0.0, picture_of(0)), Grabbed(100, 1.0, None)]
-    monkeypatch.setattr(decoder, "opened", lambda *_: OpenFilm(1.0, 2, iter(taken)))
+    monkeypatch.setattr(decoder, "opened", lambda *_: OpenVideo(1.0, 2, iter(taken)))
     answers, words = Answers(), cast(Any, Words())
     decoder.serve(request(sizes=[(8, 6)]), answers, words)
     parts = [HEADER.size + len(payload) for *_, payload in answers.parted()]

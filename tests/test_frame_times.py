@@ -8,7 +8,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
-from spoiling import write_film, write_uneven
+from spoiling import write_uneven, write_video
 
 from common.config.part_settings import CameraSettings
 from common.config.settings import Settings
@@ -34,7 +34,7 @@ def decoder() -> Iterator[Decoder]:
 
 def with_gaps(path: Path) -> None:
     """An AVI tells a gap by empty chunks: as many as frames are missing."""
-    write_film(path, PICTURES, HZ)
+    write_video(path, PICTURES, HZ)
     content = path.read_bytes()
     start = content.index(b"movi")
     at, movie, index = start + 4, b"movi", b""
@@ -102,7 +102,7 @@ def test_a_steady_film_keeps_its_rate_to_the_last_digit(
     """Also where its container rounds: frame n of a film of 30 Hz is at n / 30."""
     path = tmp_path / f"steady{suffix}"
     if suffix == ".avi":
-        write_film(path, PICTURES, HZ)
+        write_video(path, PICTURES, HZ)
     else:
         write_uneven(path, PICTURES, range(len(PICTURES)), HZ)
     view = view_of(str(path), decoder)

@@ -86,7 +86,11 @@ LINES = st.lists(
     st.sampled_from(
         [
             *("from common.bus import bus", "from viewer import (\n    track,\n)", "x = 'äöü'"),
-            *("import synth as s, animator.film as f", "from numpy import array", "# from common"),
+            *(
+                "import synth as s, animator.video_file as f",
+                "from numpy import array",
+                "# from common",
+            ),
             *("if x:\n    from integrator import merge; y = 1", "from tritrack import client"),
             *("'''\nfrom common import x\n'''", "x = 'ü'; import recognizer.events as e"),
         ]

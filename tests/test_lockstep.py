@@ -34,7 +34,7 @@ from runtime.offline.rig_from_person import Looked
 from runtime.overrides import overridden
 from runtime.store.past_run import open_run
 from runtime.store.pose_arrays import poses
-from runtime.store.runs import NOBODY_SEEN
+from runtime.store.runs import NO_PERSON_SEEN
 from runtime.unfinished.work import Course, InMemory
 from synth.write import ClipSet, write_set
 
@@ -211,8 +211,10 @@ def ready_made(clip: Clip = PAIR) -> Prepared:
     """A clip of which view 2 was cut off."""
     state = merge_state.init(RIG, PERIOD_S, Settings(), METHODS["default"])
     endings = {1: Ending(60), 2: Ending(20, 1)}
-    reels: Any = {view.number: SimpleNamespace(ending=endings[view.number]) for view in clip.views}
-    return Prepared(clip, reels, {}, state, ["nothing moves"], 2.34567)
+    frame_caches: Any = {
+        view.number: SimpleNamespace(ending=endings[view.number]) for view in clip.views
+    }
+    return Prepared(clip, frame_caches, {}, state, ["nothing moves"], 2.34567)
 
 
 def performed_so(*bodies: Body) -> Performance:
@@ -254,7 +256,7 @@ def test_a_summary_tells_the_clip_its_times_and_all_that_was_odd() -> None:
     empty = msgspec.structs.replace(seen_body(), joints_m=(), status="empty")
     facts = lockstep._facts(ready_made(plain), performed_so(empty), {})
     assert "acts" not in facts
-    assert NOBODY_SEEN in facts["warnings"]
+    assert NO_PERSON_SEEN in facts["warnings"]
 
 
 class Told:

@@ -62,7 +62,7 @@ def test_a_model_is_replaced_only_by_force_and_landmarks_go_on_where_they_were(
     monkeypatch: pytest.MonkeyPatch, here: Path
 ) -> None:
     (here / "m.npz").write_text("mine")
-    taught = instead(monkeypatch, "tritrack.commands.model_commands._teach_on_films")
+    taught = instead(monkeypatch, "tritrack.commands.model_commands._teach_on_videos")
     with pytest.raises(FileRefused):
         typed(train, "a", "--out", "m.npz")
     with pytest.raises(FileRefused):

@@ -15,7 +15,7 @@ from runtime.store import journal
 from runtime.store.journal import Head, Journal
 from runtime.store.past_journal import Journalled
 from runtime.store.past_run import open_run
-from runtime.store.runs import NOBODY_SEEN, write_run
+from runtime.store.runs import NO_PERSON_SEEN, write_run
 
 
 def test_no_more_than_the_bound_is_kept_and_what_gave_way_is_counted() -> None:
@@ -90,10 +90,10 @@ def test_a_run_whose_frames_show_nobody_says_so() -> None:
     assert heard.notes == []
     heard.so_far.take([body(0), body(1)], [])
     note_unseen(heard)
-    assert heard.notes == [NOBODY_SEEN]
+    assert heard.notes == [NO_PERSON_SEEN]
     heard.so_far.take([msgspec.structs.replace(body(2), status="lost")], [])
     note_unseen(heard)
-    assert heard.notes == [NOBODY_SEEN]
+    assert heard.notes == [NO_PERSON_SEEN]
 
 
 def test_a_performance_is_named_by_the_last_window_that_had_a_name() -> None:

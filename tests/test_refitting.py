@@ -11,7 +11,7 @@ import numpy as np
 import psutil
 import pytest
 from rich.console import Console
-from spoiling import film_of, write_film
+from spoiling import film_of, write_video
 
 from animator.retouching.fitting import FitError
 from common.config.part_settings import CameraSettings
@@ -30,7 +30,7 @@ SAID = Notes(note=(Note(10, orientation="backward_left"),))
 
 @pytest.fixture
 def run(clip: Path, tmp_path: Path) -> Path:
-    write_film(tmp_path / "waving.avi", film_of(next(clip.glob("cam1.*")))[:30])
+    write_video(tmp_path / "waving.avi", film_of(next(clip.glob("cam1.*")))[:30])
     single_all([tmp_path / "waving.avi"], tmp_path, Given(), Settings(size="160x120"), QUIET)
     return tmp_path / "waving"
 

@@ -38,7 +38,7 @@ def quality(**more: Any) -> Any:
 
 @pytest.fixture
 def by_clips(monkeypatch: pytest.MonkeyPatch) -> Called:
-    instead(monkeypatch, "common.video.clip_sources.refuse_no_footage")
+    instead(monkeypatch, "common.video.clip_sources.refuse_no_source")
     instead(monkeypatch, "common.config.config_file.load")
     instead(monkeypatch, "calibration.paper.calibration.write_rig")
     place = "runtime.offline.rig_of_clips.calibrated_by_clips"
@@ -199,7 +199,7 @@ def test_what_is_found_is_written_and_what_shows_nothing_is_refused_before(
     by_clips: Called, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     written = instead(monkeypatch, "calibration.paper.calibration.write_rig")
-    looked = instead(monkeypatch, "common.video.clip_sources.refuse_no_footage")
+    looked = instead(monkeypatch, "common.video.clip_sources.refuse_no_source")
     typed(calibrate_app, "person", "a", "b", "--out", "r.json")
     rig, quality_told, _ = by_clips.answer
     assert written.last == (Path("r.json"), rig, quality_told)

@@ -13,11 +13,11 @@ from rich.console import Console
 from calibration.board.board import BOARDS, Board
 from calibration.board.board_quality import CameraQuality, Quality
 from calibration.board.board_rig import BoardCalibration
-from calibration.board.still_board import Film, Moments
+from calibration.board.still_board import BoardVideo, Moments
 from common.rig.camera import centre, paper_rig
 from common.rig.rig_file import CalibrationError, load_rig
 from runtime.offline import rig_of_boards
-from runtime.offline.board_films import Looked
+from runtime.offline.board_videos import Looked
 from runtime.offline.rig_of_boards import Shown, calibrate_by_videos
 
 QUIET = Console(quiet=True)
@@ -73,7 +73,7 @@ def test_a_chessboard_needs_its_squares_measured(tmp_path: Path) -> None:
 
 def looked_at(board: Board, size_px: tuple[int, int]) -> Looked:
     width, height = size_px
-    film = Film("cam", size_px, np.empty(0), np.empty((0, 12, 2)))
+    film = BoardVideo("cam", size_px, np.empty(0), np.empty((0, 12, 2)))
     return Looked(film, board, np.zeros((height, width, 3), np.uint8))
 
 
@@ -97,7 +97,7 @@ class Bench:
         return [looked_at(boards[0] if len(boards) == 1 else self.printed, (320, 240))] * 2
 
     def calibrated(
-        self, films: list[Film], board: Board, floor_s: float | None
+        self, films: list[BoardVideo], board: Board, floor_s: float | None
     ) -> BoardCalibration:
         self.board, self.floor_s = board, floor_s
         corners = np.array([[0.0, 0.0], [319.0, 0.0], [319.0, 239.0], [0.0, 239.0]])

@@ -70,7 +70,9 @@ class Clips:
         assert clip == self.clips[settings.clip]
         assert sources == {"of": settings.clip}
         assert self.open_sources == 1
-        self.read.append({number: id(reel._decoder) for number, reel in readers.items()})
+        self.read.append(
+            {number: id(frame_cache._decoder) for number, frame_cache in readers.items()}
+        )
         return settings.clip
 
     def clock_of(self, sighting: str) -> Clock:

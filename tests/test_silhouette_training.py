@@ -13,7 +13,7 @@ from rich.console import Console
 from lab.training import silhouette_training
 from lab.training.silhouette_training import (
     Examples,
-    LabelledFilm,
+    LabelledVideo,
     examples_of,
     films,
     fitted,
@@ -87,7 +87,7 @@ def test_a_small_pixel_is_body_where_half_of_it_is() -> None:
     mask[10, 20:22] = mask[30, 41] = True
     frame = np.zeros((240, 320, 3), np.uint8)
     frame[10, 20] = (40, 80, 120)
-    found = silhouette_training._small(LabelledFilm([frame], [mask]), 2)
+    found = silhouette_training._small(LabelledVideo([frame], [mask]), 2)
     assert np.argwhere(found.masks[0]).tolist() == [[5, 10]]
     assert found.frames[0].shape == (120, 160, 3)
     assert found.frames[0][5, 10].tolist() == [10, 20, 30]
@@ -185,7 +185,7 @@ def test_one_of_three_frames_is_learnt_from_and_colours_of_all_that_show_a_perso
     for n in (3, 4, 6):
         masks[n][2, 1] = masks[n][3, 3] = True
     masks[6][1, 2] = True
-    found = list(silhouette_training._doubtful_pixels(LabelledFilm(frames, masks), Draws()))  # type: ignore[arg-type]
+    found = list(silhouette_training._doubtful_pixels(LabelledVideo(frames, masks), Draws()))  # type: ignore[arg-type]
     assert noted == [((n, "lit"), "its own mask", frame, True) for n, frame in enumerate((3, 4, 6))]
     assert [one.body.tolist() for one in found] == [[True, True, False], [True, True, True]]
     assert found[0].features.tolist() == [[6, 7], [4, 5], [2, 3]]

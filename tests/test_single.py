@@ -10,7 +10,7 @@ import msgspec
 import numpy as np
 import pytest
 from rich.console import Console
-from spoiling import film_of, write_film, write_uneven
+from spoiling import film_of, write_uneven, write_video
 
 from common.config.part_settings import CameraSettings
 from common.config.settings import Settings
@@ -40,7 +40,7 @@ SMALL = Settings(size="160x120")
 def video(clip: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Part of a clip under a name of its own, without a calibration beside it."""
     path = tmp_path_factory.mktemp("videos") / "waving.avi"
-    write_film(path, film_of(next(clip.glob("cam1.*")))[:40])
+    write_video(path, film_of(next(clip.glob("cam1.*")))[:40])
     return path
 
 
@@ -133,7 +133,7 @@ def test_an_empty_picture_is_the_background_where_it_is_given(video: Path, tmp_p
     """Of somebody who never leaves a film alone does not tell what is behind."""
     pictures = film_of(video)
     cv2.imwrite(str(tmp_path / "empty room.png"), pictures[0])
-    write_film(tmp_path / "waving.avi", pictures[9:])
+    write_video(tmp_path / "waving.avi", pictures[9:])
     given = Given(background=tmp_path / "empty room.png")
     facts = single_all([tmp_path / "waving.avi"], tmp_path / "runs", given, SMALL, QUIET)
     assert facts["clips"]["waving"]["never_uncovered"] == 0.0
@@ -198,7 +198,7 @@ def test_a_camera_that_moves_is_refused(tmp_path: Path, capsys: pytest.CaptureFi
     """T2: a static background."""
     scene = np.random.default_rng(5).integers(0, 255, (30, 120, 3), np.uint8)
     scene = cv2.resize(scene, (960, 120), interpolation=cv2.INTER_NEAREST)
-    write_film(tmp_path / "pan.avi", [scene[:, 20 * n : 20 * n + 160] for n in range(40)])
+    write_video(tmp_path / "pan.avi", [scene[:, 20 * n : 20 * n + 160] for n in range(40)])
     assert "its camera moves" in refusal(tmp_path / "pan.avi", tmp_path / "runs", capsys)
 
 

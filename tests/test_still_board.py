@@ -3,7 +3,7 @@
 import numpy as np
 
 from calibration.board.still_board import (
-    Film,
+    BoardVideo,
     Moments,
     Rest,
     moments_of,
@@ -15,7 +15,7 @@ from calibration.board.still_board import (
 GRID = np.array([(x, y) for y in range(3) for x in range(4)], float) * 20 + 100
 
 
-def film(places: list[tuple[float, int]], late_s: float = 0.0) -> Film:
+def film(places: list[tuple[float, int]], late_s: float = 0.0) -> BoardVideo:
     """A board at a column for so many looks, five a second, then on its way for one."""
     times, px, now = [], [], late_s
     for column, looks in places:
@@ -24,7 +24,7 @@ def film(places: list[tuple[float, int]], late_s: float = 0.0) -> Film:
             px.append(GRID + np.array([column, 0.0]))
             now += 0.2
         now += 0.2
-    return Film("a.avi", (640, 480), np.array(times), np.array(px))
+    return BoardVideo("a.avi", (640, 480), np.array(times), np.array(px))
 
 
 def test_a_rest_is_a_stretch_of_the_same_place() -> None:

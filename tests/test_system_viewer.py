@@ -340,7 +340,7 @@ def test_a_view_has_the_rate_of_both_where_both_videos_are_here(
     both = [msgspec.structs.replace(VIEW, number=n, fps=12.0) for n in (1, 2)]
     monkeypatch.setattr(viewer_process, "open_clip", lambda *_: SimpleNamespace(views=both))
     named: list[Any] = []
-    monkeypatch.setattr(viewer_process, "footage_of", lambda _: named)
+    monkeypatch.setattr(viewer_process, "sources_of", lambda _: named)
     decoder: Any = None
     first, gone = str(here), str(tmp_path / "none.avi")
     for sources, found in (
@@ -364,7 +364,7 @@ def test_a_viewer_is_prepared_with_its_camera_its_warnings_and_whether_it_is_alo
     monkeypatch.setattr(viewer_process, "open_clip", lambda *_: clip)
     monkeypatch.setattr(viewer_process, "opening_of_run", lambda *_: opening)
     named = [SimpleNamespace(source=0)] * max(1, cameras)
-    monkeypatch.setattr(viewer_process, "footage_of", lambda _: named)
+    monkeypatch.setattr(viewer_process, "sources_of", lambda _: named)
     made: list[Any] = []
     init = track.init
 

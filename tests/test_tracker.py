@@ -229,7 +229,7 @@ def test_images_keep_their_size_and_time_goes_on() -> None:
     assert tracker.step(EMPTY, 6.0)[0].captured_s == 6.0
 
 
-class Reel:
+class FrameCache:
     """Images that all come in the same arrays, as `capture.read(image)` gives them."""
 
     def __init__(self, films: list[list[Image]]) -> None:
@@ -249,14 +249,16 @@ def test_a_program_may_read_all_images_into_the_same_arrays(
 ) -> None:
     """The last picture and those of the empty room are remembered, not where they came in."""
     rig, got = load_rig(clip.parent / "calibration.json"), []
-    for reel in (Reel(films), None):
+    for frame_cache in (FrameCache(films), None):
         plates = [film[0].copy() for film in films]
         tracker = Tracker(rig, size="160x120", background=None if learns else plates)
         for plate in plates:
             plate[:] = 0
         bodies = list[Body]()
         for n in range(30):
-            bodies += tracker.step(reel.read(n) if reel else [film[n] for film in films])
+            bodies += tracker.step(
+                frame_cache.read(n) if frame_cache else [film[n] for film in films]
+            )
         got.append(bodies)
     assert got[0] == got[1]
     assert got[0][-1].views == "both"

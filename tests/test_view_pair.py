@@ -8,15 +8,17 @@ import pytest
 from common.bus.messages import ViewerNumber
 from common.config.part_settings import CameraSettings
 from common.config.settings import Settings
-from common.video.clip_sources import ClipError, Footage
+from common.video.clip_sources import ClipError, ViewSource
 from common.video.pictures import Source
 from common.video.view_pair import refuse_missing, refuse_same_source
 
 
-def named(*sources: Source) -> list[Footage]:
+def named(*sources: Source) -> list[ViewSource]:
     numbers: tuple[ViewerNumber, ...] = (1, 2)
     views = zip(numbers, sources, strict=False)
-    return [Footage(number, source, CameraSettings(), f"cam{number}") for number, source in views]
+    return [
+        ViewSource(number, source, CameraSettings(), f"cam{number}") for number, source in views
+    ]
 
 
 def test_equal_files_are_one_video_whatever_their_names(tmp_path: Path) -> None:
@@ -57,7 +59,7 @@ def test_one_of_two_is_refused_with_the_other_ones_likely_name(
     (tmp_path / "take 1 2").mkdir()
     clip, camera = Settings(clip=str(tmp_path)), CameraSettings()
     with pytest.raises(ClipError) as caught:
-        refuse_missing(clip, [Footage(number, str(found), camera, f"cam{number}")], None)
+        refuse_missing(clip, [ViewSource(number, str(found), camera, f"cam{number}")], None)
     assert f"{tmp_path} {said}" in str(caught.value)
     assert f"add --views {number}, or name its video in settings (cameras.cam{number}.s" in str(
         caught.value
@@ -68,7 +70,7 @@ def test_one_alone_is_let_through_where_both_are_there_or_it_was_named_itself() 
     own = CameraSettings(source="walk.avi")
     clip = Settings(clip="nowhere")
     refuse_missing(clip, named("cam1.avi", "cam2.avi"), None)
-    refuse_missing(clip, [Footage(1, "walk.avi", own, "cam1")], None)
+    refuse_missing(clip, [ViewSource(1, "walk.avi", own, "cam1")], None)
     refuse_missing(clip, named(0), None)
     refuse_missing(Settings(), named("cam1.avi"), None)
 
@@ -86,7 +88,9 @@ def test_views_that_are_the_same_are_named_in_their_order() -> None:
 def refusal(
     folder: Path, numbers: Sequence[int], asked: Sequence[int] | None, clip: bool = True
 ) -> str:
-    found = [Footage(n, str(folder / f"cam{n}.avi"), CameraSettings(), f"cam{n}") for n in numbers]
+    found = [
+        ViewSource(n, str(folder / f"cam{n}.avi"), CameraSettings(), f"cam{n}") for n in numbers
+    ]
     with pytest.raises(ClipError) as caught:
         refuse_missing(Settings(clip=str(folder) if clip else ""), found, asked)
     return str(caught.value)

@@ -19,7 +19,7 @@ from common.config.settings import Settings
 from common.method import METHODS
 from common.npz_file import Facts
 from common.video.clip_facts import ClipView, shortfall
-from common.video.clip_sources import footage_of
+from common.video.clip_sources import sources_of
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
 from common.video.pictures import DecoderDied, Undecodable, is_camera, is_recorded
@@ -213,7 +213,7 @@ def _prepared(settings: Settings, viewer: ViewerNumber, context: ProcessContext)
     for warning in warnings:
         log.warning(warning)
     camera = clip.rig.cameras[0] if clip.rig else None
-    alone = len(footage_of(settings)) == 1
+    alone = len(sources_of(settings)) == 1
     setup = track.Setup(viewer, camera, settings, METHODS[settings.mode], alone)
     state = track.init(setup, opening.background, somebody=opening.somebody)
     return Prepared(view, state, warnings, context.kept)
@@ -227,7 +227,7 @@ def _empty_frames(state: track.State, view: ClipView) -> int:
 
 def _beside_the_other(view: ClipView, settings: Settings, decoder: Decoder) -> ClipView:
     """The view at the shared frame rate, where the other's video is on this host too."""
-    named = footage_of(settings)
+    named = sources_of(settings)
     here = [is_recorded(each.source) and Path(each.source).is_file() for each in named]
     if len(named) < 2 or not all(here):
         return view

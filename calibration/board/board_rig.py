@@ -11,8 +11,8 @@ from calibration.board.board_floor import Floor, floor_of, world_cameras
 from calibration.board.board_quality import Quality, miss_px_of, quality_of
 from calibration.board.lens_start import Lens, Place, between, lens_of
 from calibration.board.still_board import (
+    BoardVideo,
     Chosen,
-    Film,
     Moments,
     moments_of,
     only,
@@ -54,7 +54,7 @@ class BoardCalibration(NamedTuple):
 
 
 def calibrated_by_board(
-    films: Sequence[Film], board: Board, floor_s: float | None = None
+    films: Sequence[BoardVideo], board: Board, floor_s: float | None = None
 ) -> BoardCalibration:
     """The rig of the cameras that recorded a board.
 
@@ -85,7 +85,7 @@ def calibrated_by_board(
 
 
 def _related(
-    films: Sequence[Film], lenses: Sequence[Lens], moments: Moments, places: Vector
+    films: Sequence[BoardVideo], lenses: Sequence[Lens], moments: Moments, places: Vector
 ) -> list[Place]:
     """From the first camera's axes to each camera's."""
     shared, width_px = seen_by(moments), films[0].size_px[0]
@@ -108,7 +108,7 @@ def _related(
     return cameras
 
 
-def _refuse_few(film: Film, rests: int) -> None:
+def _refuse_few(film: BoardVideo, rests: int) -> None:
     if rests < LEAST_RESTS:
         raise CalibrationError(
             f"{film.name} shows the board in {len(film.time_s)} of the pictures that were looked "
@@ -117,7 +117,7 @@ def _refuse_few(film: Film, rests: int) -> None:
         )
 
 
-def _refuse_poor(film: Film, miss_px: float) -> None:
+def _refuse_poor(film: BoardVideo, miss_px: float) -> None:
     if miss_px > POOR_PX:
         raise CalibrationError(
             f"the corners in {film.name} miss the board by {miss_px:.1f} px: it must be flat, "

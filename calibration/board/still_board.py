@@ -20,7 +20,7 @@ SHARED: Final = 0.5
 found in videos that began up to a second apart."""
 
 
-class Film(NamedTuple):
+class BoardVideo(NamedTuple):
     """The board's corners in one video."""
 
     name: str
@@ -50,7 +50,7 @@ class Moments(NamedTuple):
     """(m, cameras, n, 2), NaN where hidden."""
 
 
-def rests_of(film: Film) -> list[Rest]:
+def rests_of(film: BoardVideo) -> list[Rest]:
     """All stretches in which the board is at rest, in order."""
     far_px = MOVED * film.size_px[0]
     groups: list[list[int]] = []
@@ -62,14 +62,14 @@ def rests_of(film: Film) -> list[Rest]:
     return [rest for group in groups if (rest := _rest(film, group)) is not None]
 
 
-def _moved_px(film: Film, before: int, after: int) -> float:
+def _moved_px(film: BoardVideo, before: int, after: int) -> float:
     """Displacement of the corners that both frames show; infinite where these are few."""
     steps = np.linalg.norm(film.px[after] - film.px[before], axis=-1)
     seen = np.isfinite(steps)
     return float(np.sqrt(np.mean(steps[seen] ** 2))) if np.count_nonzero(seen) >= 4 else np.inf
 
 
-def _rest(film: Film, group: Sequence[int]) -> Rest | None:
+def _rest(film: BoardVideo, group: Sequence[int]) -> Rest | None:
     begin_s, end_s = float(film.time_s[group[0]]), float(film.time_s[group[-1]])
     if end_s - begin_s < SHORTEST_S:
         return None

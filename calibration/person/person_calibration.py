@@ -5,7 +5,7 @@ from typing import Final
 
 import numpy as np
 
-from calibration.person.film_worth import measured_worth
+from calibration.person.independent_moments import measured_worth
 from calibration.person.rig_certainty import (
     STEP,
     covariance_of,

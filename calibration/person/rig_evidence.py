@@ -28,8 +28,8 @@ INDEPENDENT_HZ: Final = 1.0
 MOST_INDEPENDENT: Final = 5.0
 """Number of independent moments that a clip counts for at first, however long it is: the network's
 systematic errors do not average out. A minute of each of two performers gave rigs that were 46 and
-59 mm off without this bound, 25 and 23 with it (docs/measurements.md). `film_worth.py` later
-estimates the number from the clip itself."""
+59 mm off without this bound, 25 and 23 with it (docs/measurements.md). `independent_moments.py`
+later estimates the number from the clip itself."""
 
 Sides = NDArray[np.bool_]
 """(n, 3) whether one view has the sides of a part exchanged relative to the other."""

@@ -21,7 +21,7 @@ class ClipError(ValueError):
     """An unusable clip: one line that names the file and the cure."""
 
 
-class Footage(NamedTuple):
+class ViewSource(NamedTuple):
     """A view as the settings or the folder name it, not opened yet."""
 
     number: ViewerNumber
@@ -31,7 +31,7 @@ class Footage(NamedTuple):
     """Name of the camera."""
 
 
-def footage_of(settings: Settings) -> list[Footage]:
+def sources_of(settings: Settings) -> list[ViewSource]:
     """The cameras in the settings or their clip folder, by number.
 
     Raises:
@@ -50,7 +50,7 @@ def footage_of(settings: Settings) -> list[Footage]:
             "the settings (cameras.cam1.source)"
         )
     numbers = numbers_of([*named])
-    found = [Footage(numbers[name], named[name], cameras[name], name) for name in named]
+    found = [ViewSource(numbers[name], named[name], cameras[name], name) for name in named]
     return sorted(found, key=lambda one: one.number)
 
 
@@ -73,13 +73,13 @@ def first_camera(settings: Settings) -> str:
     return next((name for name, number in numbers.items() if number == 1), CLIP_CAMERAS[0])
 
 
-def refuse_no_footage(settings: Settings, path: Path) -> None:
+def refuse_no_source(settings: Settings, path: Path) -> None:
     """Refuse settings without a clip or camera.
 
     Raises:
-        ClipError: When they have none, or as `footage_of`.
+        ClipError: When they have none, or as `sources_of`.
     """
-    if not footage_of(settings):
+    if not sources_of(settings):
         raise ClipError(f"{path}: {NOTHING}")
 
 
@@ -125,7 +125,7 @@ def _videos(folder: Path, name: str) -> list[Path]:
     ]
 
 
-def companions_folder(settings: Settings, named: list[Footage]) -> Path:
+def companions_folder(settings: Settings, named: list[ViewSource]) -> Path:
     """The folder for files that belong to the videos."""
     if settings.clip:
         return Path(settings.clip)

@@ -17,7 +17,7 @@ from common.rig.absurd_rig import nearly_one_view, refuse_absurd
 from common.rig.camera import Rig
 from common.rig.rig_file import CalibrationError, fitted, load_rig
 from common.video.clip_facts import Clip, ClipView, Meta
-from common.video.clip_sources import NOTHING, ClipError, Footage, companions_folder, footage_of
+from common.video.clip_sources import NOTHING, ClipError, ViewSource, companions_folder, sources_of
 from common.video.decoding import Decoder
 from common.video.frame_times import timed
 from common.video.pictures import DecoderDied, Source, Undecodable, VideoInfo, is_recorded
@@ -51,7 +51,7 @@ def open_clip(
         ClipError: When something is missing, empty, no video, or inconsistent; when two views are
             of one camera; when the calibration's cameras cannot be matched.
     """
-    found = footage_of(settings)
+    found = sources_of(settings)
     if not found:
         raise ClipError(NOTHING)
     refuse_missing(settings, found, numbers)
@@ -94,7 +94,7 @@ def meta_of(settings: Settings) -> Meta:
     Raises:
         ClipError: When there is no such clip, or the file cannot be read.
     """
-    return _meta(companions_folder(settings, footage_of(settings)))
+    return _meta(companions_folder(settings, sources_of(settings)))
 
 
 def find_calibration(settings: Settings, folder: Path) -> Path | None:
@@ -124,7 +124,7 @@ def _meta(folder: Path) -> Meta:
     return meta
 
 
-def _view(named: Footage, settings: Settings, meta: Meta, decoder: Decoder) -> ClipView:
+def _view(named: ViewSource, settings: Settings, meta: Meta, decoder: Decoder) -> ClipView:
     info = timed(probed(named.source, decoder))
     if named.settings.background:
         _refuse_another_scene(named, probed(named.settings.background, decoder), info)
@@ -150,7 +150,7 @@ def _view(named: Footage, settings: Settings, meta: Meta, decoder: Decoder) -> C
     )
 
 
-def _told_s(meta: Meta, named: Footage) -> tuple[float, ...]:
+def _told_s(meta: Meta, named: ViewSource) -> tuple[float, ...]:
     """Capture times of a file's frames, from the files beside it."""
     return meta.capture_s.get(named.name, ()) if is_recorded(named.source) else ()
 
@@ -172,7 +172,7 @@ def probed(source: Source, decoder: Decoder) -> VideoInfo:
     return info
 
 
-def _refuse_another_scene(named: Footage, plate: VideoInfo, info: VideoInfo) -> None:
+def _refuse_another_scene(named: ViewSource, plate: VideoInfo, info: VideoInfo) -> None:
     """A picture of another shape was cropped, or comes from another camera; the size does not
     matter."""
     aspect = plate.width * info.height / (plate.height * info.width)
@@ -214,7 +214,7 @@ def _refuse_a_lost_head(path: Path) -> None:
 
 
 def _rig(
-    settings: Settings, folder: Path, found: Sequence[Footage], views: tuple[ClipView, ...]
+    settings: Settings, folder: Path, found: Sequence[ViewSource], views: tuple[ClipView, ...]
 ) -> Rig | None:
     """The calibration of the cameras in use, at their working size."""
     path = find_calibration(settings, folder)
@@ -233,7 +233,7 @@ def _rig(
 
 
 def _places(
-    rig: Rig, found: Sequence[Footage], wanted: Sequence[ViewerNumber], path: Path
+    rig: Rig, found: Sequence[ViewSource], wanted: Sequence[ViewerNumber], path: Path
 ) -> list[int]:
     """Indices of cameras in a calibration: by the settings' names, by name, or by number.
 

@@ -50,7 +50,7 @@ class Grabbed:
     """The decoder met damage in this frame, or before it."""
 
 
-class OpenFilm(NamedTuple):
+class OpenVideo(NamedTuple):
     """An open source."""
 
     fps: float
@@ -115,7 +115,7 @@ def say_times(source: Source, answers: Answers) -> None:
         answers.flush()
 
 
-def opened(source: Source, every: int, start: int, complaints: Complaints) -> OpenFilm:
+def opened(source: Source, every: int, start: int, complaints: Complaints) -> OpenVideo:
     """A video, a camera, or a still picture as a video of one frame.
 
     Args:
@@ -125,13 +125,13 @@ def opened(source: Source, every: int, start: int, complaints: Complaints) -> Op
         complaints: FFmpeg's messages about it.
     """
     if is_recorded(source) and cv2.haveImageReader(source) and cv2.imcount(source) == 1:
-        return OpenFilm(0.0, 1, iter([Grabbed(0, time.monotonic(), cv2.imread(source))]))
+        return OpenVideo(0.0, 1, iter([Grabbed(0, time.monotonic(), cv2.imread(source))]))
     capture = cv2.VideoCapture(source)
     fps, frames = capture.get(cv2.CAP_PROP_FPS), capture.get(cv2.CAP_PROP_FRAME_COUNT)
     taken = grabs(capture, every, start)
     if is_recorded(source):
         taken = judged(taken, source, complaints)
-    return OpenFilm(max(0.0, fps), max(0, round(frames)), taken)
+    return OpenVideo(max(0.0, fps), max(0, round(frames)), taken)
 
 
 def judged(taken: Iterator[Grabbed], source: str, complaints: Complaints) -> Iterator[Grabbed]:

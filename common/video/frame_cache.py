@@ -10,10 +10,10 @@ MOST_BYTES: Final = 1 << 27
 """Upper bound of the cache, bytes: 38 s at 320x240 and 15 Hz, 2.5 minutes at 160x120."""
 
 
-class Reel:
+class FrameCache:
     """Reads a clip through a decoder; a small clip that was read to its end is decoded once.
 
-    A clip is read once to learn the background and again to track. A reel serves one clip: it does
+    A clip is read once to learn the background and again to track. A cache serves one clip: it does
     not notice that the file has changed.
     """
 

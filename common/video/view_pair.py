@@ -8,7 +8,7 @@ from typing import Final
 
 from common.bus.messages import ViewerNumber
 from common.config.settings import Settings
-from common.video.clip_sources import COMPANIONS, ClipError, Footage
+from common.video.clip_sources import COMPANIONS, ClipError, ViewSource
 from common.video.pictures import Source, is_recorded
 
 WITHOUT: Final = (
@@ -18,7 +18,7 @@ WITHOUT: Final = (
 
 
 def refuse_missing(
-    settings: Settings, found: Sequence[Footage], asked: Collection[ViewerNumber] | None
+    settings: Settings, found: Sequence[ViewSource], asked: Collection[ViewerNumber] | None
 ) -> None:
     """Refuse a clip without all the cameras asked for.
 
@@ -42,11 +42,11 @@ def refuse_missing(
         raise ClipError(f"there is no camera {missing[0]}: the settings name {names or 'none'}")
 
 
-def _is_of_the_folder(one: Footage, settings: Settings) -> bool:
+def _is_of_the_folder(one: ViewSource, settings: Settings) -> bool:
     return bool(settings.clip) and is_recorded(one.source) and not one.settings.source
 
 
-def _without(settings: Settings, found: Sequence[Footage], missing: ViewerNumber) -> str:
+def _without(settings: Settings, found: Sequence[ViewSource], missing: ViewerNumber) -> str:
     """What a folder lacks, and the cures."""
     videos = [Path(each.source).name for each in found if is_recorded(each.source)]
     likely = _likely(Path(settings.clip), videos, missing)
@@ -70,7 +70,7 @@ def _likely(folder: Path, found: Collection[str], missing: ViewerNumber) -> str:
     return next((name for name in names if str(missing) in Path(name).stem), "")
 
 
-def refuse_same_source(named: list[Footage]) -> None:
+def refuse_same_source(named: list[ViewSource]) -> None:
     """Refuse two views of one video or camera: such a pair contains no depth.
 
     Raises:

@@ -21,7 +21,7 @@ class Link(NamedTuple):
     late_s: tuple[float, ...] = ()
     """Delays of the last reports; of reports that came together, as after an interruption, the
     smallest."""
-    is_told: bool = False
+    is_reported: bool = False
     """True: it was reported as slow."""
 
 
@@ -66,14 +66,14 @@ def told(state: State, since_s: float) -> tuple[State, list[str]]:
         if len(link.late_s) < LOOKS_AT:
             continue
         slow_s, bound_s = min(link.late_s), SLOW_PERIODS * state.period_s
-        if slow_s > bound_s and not link.is_told:
+        if slow_s > bound_s and not link.is_reported:
             waits = "bodies wait for it" if slow_s <= LONGEST_S else "bodies go without it"
             lines.append(
                 f"{since_s:.1f} s: view {viewer} is heard {slow_s:.2f} s late (its link is slow, "
                 f"or its clock was set); {waits}"
             )
-        is_told = slow_s > (bound_s / 2 if link.is_told else bound_s)
-        state = _with(state, viewer, link._replace(is_told=is_told))
+        is_reported = slow_s > (bound_s / 2 if link.is_reported else bound_s)
+        state = _with(state, viewer, link._replace(is_reported=is_reported))
     return state._replace(news=(*state.news, *lines)), lines
 
 

@@ -8,7 +8,7 @@ from common.config.settings import Settings
 from common.method import METHODS
 from common.video.clip_facts import Clip
 from integrator import diagnostics
-from integrator.live_rig import rig_change, rig_search, seen_lately
+from integrator.live_rig import recent_views, rig_change, rig_search
 from integrator.live_rig.rig_job import Job, Solution
 from integrator.live_rig.rig_solver import RigSolver
 from integrator.merge_state import State
@@ -42,7 +42,7 @@ class Looking(NamedTuple):
     doubted: int = -1
     """Number of the rig that was doubted last."""
     now_s: float = 0.0
-    lately: seen_lately.State = seen_lately.State()
+    lately: recent_views.State = recent_views.State()
     news: tuple[str, ...] = ()
     """The reports so far."""
 
@@ -89,7 +89,7 @@ class LiveCalibration:
 
     def heard(self, instant: Instant) -> None:
         """Process one instant."""
-        lately = seen_lately.step(self.looking.lately, first_two(instant.views))
+        lately = recent_views.step(self.looking.lately, first_two(instant.views))
         at = self.looking = self.looking._replace(now_s=instant.newest.captured_s, lately=lately)
         if not at.looks or at.search.is_over:
             return
@@ -127,9 +127,9 @@ class LiveCalibration:
             return state
         stood = at.search.stood
         if stood is None or was_sure:
-            stood = seen_lately.stand_before(at.lately, before, at.now_s)
+            stood = recent_views.stand_before(at.lately, before, at.now_s)
         search = rig_search.anew(at.search, state.rig, moved, stood)
-        self.looking = at._replace(search=search, lately=seen_lately.State(), stays="")
+        self.looking = at._replace(search=search, lately=recent_views.State(), stays="")
         return state
 
     def _look_where_doubted(self, state: State) -> None:

@@ -10,10 +10,10 @@ from common.config.settings import Settings
 from common.method import METHODS, Mode
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
-from common.video.frame_cache import Reel
+from common.video.frame_cache import FrameCache
 from lab.bench.bench_figure import Measured, least_s
-from runtime.offline.film_passes import FilmFacts, bodies_of, silhouettes_of
-from runtime.offline.film_tracking import Film, follow_clip
+from runtime.offline.video_passes import VideoFacts, bodies_of, silhouettes_of
+from runtime.offline.video_tracking import VideoInput, follow_clip
 from viewer.room.background_source import background_of_film
 
 ALONE: Final = (1,)
@@ -77,17 +77,17 @@ def followed(settings: Settings, repeats: int) -> Times:
 
 def _followed(settings: Settings, repeats: int, decoder: Decoder) -> Times:
     clip = open_clip(settings, decoder, ALONE)
-    view, reel = clip.views[0], Reel(decoder)
-    background = background_of_film(view, settings.silhouette, reel)
+    view, frame_cache = clip.views[0], FrameCache(decoder)
+    background = background_of_film(view, settings.silhouette, frame_cache)
     method, period_s = METHODS[settings.mode], clip.every / view.fps
-    followed = follow_clip(Film(clip, background), settings, method, decoder)
-    film = FilmFacts(settings, method, view.number, period_s, None)
+    followed = follow_clip(VideoInput(clip, background), settings, method, decoder)
+    film = VideoFacts(settings, method, view.number, period_s, None)
 
     def decoded() -> int:
         return sum(1 for _ in decoder.frames(view.source, view.size))
 
     def cut_out() -> int:
-        return len(silhouettes_of(clip, background, film, reel))
+        return len(silhouettes_of(clip, background, film, frame_cache))
 
     def posed() -> int:
         return len(bodies_of(followed.reports, film).bodies)

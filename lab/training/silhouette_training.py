@@ -60,7 +60,7 @@ class Examples(NamedTuple):
     body: Mask
 
 
-class LabelledFilm(NamedTuple):
+class LabelledVideo(NamedTuple):
     """One camera's recording."""
 
     frames: list[Image]
@@ -106,7 +106,7 @@ def examples_of(seed: int) -> Examples:
     return Examples(*(np.concatenate(part) for part in zip(*parts, strict=True)))
 
 
-def films(seed: int, rng: np.random.Generator) -> list[LabelledFilm]:
+def films(seed: int, rng: np.random.Generator) -> list[LabelledVideo]:
     """A performance recorded by two cameras: the empty room, then a person in the middle of a
     movement."""
     rig, staging = default_rig(*SIZE), np.random.default_rng([seed, 77])
@@ -114,7 +114,7 @@ def films(seed: int, rng: np.random.Generator) -> list[LabelledFilm]:
     posture = POSTURES[seed % len(POSTURES)] if seed % FREE_EVERY else "free"
     moved = _cut(performance(someone, posture, seed), staging)
     quality = [cv2.IMWRITE_JPEG_QUALITY, int(rng.integers(*QUALITY))]
-    seen = [LabelledFilm([], []) for _ in rig.cameras]
+    seen = [LabelledVideo([], []) for _ in rig.cameras]
     for shot in render(someone, moved, rig, ROOMS + seed, seed):
         for film, frame, mask in zip(seen, *shot, strict=True):
             packed = cv2.imencode(".jpg", frame, quality)[1]
@@ -158,17 +158,17 @@ def _cut(moved: Motion, rng: np.random.Generator) -> Motion:
     )
 
 
-def _small(film: LabelledFilm, share: int) -> LabelledFilm:
+def _small(film: LabelledVideo, share: int) -> LabelledVideo:
     """The video at a reduced size; a small pixel is body where half of it is."""
     width, height = SIZE[0] // share, SIZE[1] // share
     frames = [cv2.resize(each, (width, height), interpolation=cv2.INTER_AREA) for each in film[0]]
     masks = [
         each.reshape(height, share, width, share).mean(axis=(1, 3)) >= 0.5 for each in film.masks
     ]
-    return LabelledFilm([np.asarray(frame, np.uint8) for frame in frames], masks)
+    return LabelledVideo([np.asarray(frame, np.uint8) for frame in frames], masks)
 
 
-def _doubtful_pixels(film: LabelledFilm, rng: np.random.Generator) -> Iterator[Examples]:
+def _doubtful_pixels(film: LabelledVideo, rng: np.random.Generator) -> Iterator[Examples]:
     """Pixels that the viewer would classify again in some frames, with their labels."""
     settings = SilhouetteSettings()
     state = silhouette.init(learn(film.frames[:EMPTY_FRAMES]), settings, DEFAULT)

@@ -97,11 +97,11 @@ def refuse_a_third_camera(settings: Settings) -> None:
 
     Raises:
         LiveRefused: When there are others.
-        ClipError: As `footage_of`.
+        ClipError: As `sources_of`.
     """
-    from common.video.clip_sources import footage_of
+    from common.video.clip_sources import sources_of
 
-    named = footage_of(settings)
+    named = sources_of(settings)
     if any(one.number > MOST_LIVE for one in named):
         names = ", ".join(one.name for one in named)
         raise LiveRefused(

@@ -5,7 +5,7 @@ import msgspec
 from common.config.settings import Settings
 from common.rig.rig_file import CalibrationError, load_rig
 from common.video.clip_facts import Clip, whole_rig
-from common.video.clip_sources import ClipError, companions_folder, footage_of
+from common.video.clip_sources import ClipError, companions_folder, sources_of
 from common.video.clips import find_calibration, open_clip
 from common.video.decoding import Decoder
 from common.video.pictures import Source, VideoInfo, is_camera
@@ -33,7 +33,7 @@ def two_camera_clip(settings: Settings) -> Clip:
     Raises:
         ClipError: When something is missing or inconsistent.
     """
-    path = find_calibration(settings, companions_folder(settings, footage_of(settings)))
+    path = find_calibration(settings, companions_folder(settings, sources_of(settings)))
     try:
         rig = load_rig(path) if path else None
     except CalibrationError as error:

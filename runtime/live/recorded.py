@@ -77,7 +77,7 @@ class SoFar:
         """For a whole clip: the last name given, by a window that saw most of it."""
         self.instants = 0
         """Number of bodies."""
-        self.with_somebody = 0
+        self.with_person = 0
         """... and of those in instants with a person."""
         self.take(bodies, postures)
 
@@ -86,6 +86,6 @@ class SoFar:
         for body in bodies:
             self.moves = step(self.moves, body)
             self.instants += 1
-            self.with_somebody += body.status != "empty"
+            self.with_person += body.status != "empty"
         for posture in postures:
             self.posture = posture.name or self.posture

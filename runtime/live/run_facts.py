@@ -9,7 +9,7 @@ from runtime.live.recorded import SoFar
 from runtime.live.screen import warnings_of
 from runtime.moved_facts import facts_of_moves
 from runtime.store.other_run import run_of
-from runtime.store.runs import NOBODY_SEEN
+from runtime.store.runs import NO_PERSON_SEEN
 
 
 def facts_of(heard: Heard, clip: Clip, seconds: float, so_far: SoFar) -> Facts:
@@ -55,8 +55,8 @@ def note_lost(heard: Heard) -> None:
 
 def note_unseen(heard: Heard) -> None:
     """Warn where frames came, and none of them shows a person."""
-    if heard.so_far.instants and not heard.so_far.with_somebody:
-        heard.notes.append(NOBODY_SEEN)
+    if heard.so_far.instants and not heard.so_far.with_person:
+        heard.notes.append(NO_PERSON_SEEN)
 
 
 def facts_of_clip(clip: Clip) -> Facts:

@@ -24,7 +24,7 @@ LOOK_AT_MOST_S: Final = 0.5
 """Upper bound of the counted time between two checks: after the supervisor itself was stopped,
 with its whole group, the others must not count as hung."""
 
-LATELY_S: Final = 2.5
+RECENT_S: Final = 2.5
 """Silence, seconds, after which a part may be unable to forward messages."""
 
 
@@ -65,7 +65,7 @@ class Watched:
     @property
     def speaks(self) -> bool:
         """Whether it has sent something recently, as a forwarding part must."""
-        return self._again_s is None and self._quiet_s <= LATELY_S
+        return self._again_s is None and self._quiet_s <= RECENT_S
 
     def look(self, now_s: float, pulses: dict[str, Pulse], reached: bool = True) -> str:
         """Restart it where it crashed or hangs; the line to report, or "".

@@ -14,7 +14,7 @@ from common.config.settings import Settings
 from common.method import Mode
 from common.npz_file import Facts
 from common.video.clip_facts import Clip, camera_names, whole_rig
-from common.video.clip_sources import ClipError, footage_of, refuse_no_footage
+from common.video.clip_sources import ClipError, refuse_no_source, sources_of
 from common.video.pictures import DecoderDied, Undecodable
 from integrator.frame_numbers import frame_times
 from runtime.offline.lockstep import Decoders, Tracked, measured_before, track_clip
@@ -81,7 +81,7 @@ def track_all(paths: Sequence[Path], out: Path, given: Asked, console: Console) 
         for (name, path), tell in by_share(progress, [*runs.items()], "tracking"):
             try:
                 own = config_file.load(path)
-                refuse_no_footage(own, path)
+                refuse_no_source(own, path)
                 settings = overridden(own, given.mode, given.size, given.landmarks, given.offset_s)
                 if given.trusted:
                     settings = msgspec.structs.replace(settings, trust_calibration=True)
@@ -123,7 +123,7 @@ def _tracked(
 
 
 def _run_of(settings: Settings) -> RunOf:
-    return run_of("track", [view.source for view in footage_of(settings)])
+    return run_of("track", [view.source for view in sources_of(settings)])
 
 
 def head_of(

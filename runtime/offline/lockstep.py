@@ -25,13 +25,12 @@ from common.video.clip_facts import (
 from common.video.clip_sources import ClipError
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
-from common.video.frame_cache import Reel
+from common.video.frame_cache import FrameCache
 from integrator import diagnostics, merge_state
 from integrator.frame_numbers import frame_times
 from integrator.measuring import opening_posture
 from integrator.merge_state import Start
 from runtime.moved_facts import moved_facts
-from runtime.offline.film_tracking import Film, Heard, follow_clip, unseen
 from runtime.offline.frame_pairs import openings
 from runtime.offline.opening_clip import body_of
 from runtime.offline.performance import (
@@ -53,11 +52,12 @@ from runtime.offline.rig_check import (
     unchecked,
 )
 from runtime.offline.rig_from_person import Looked, by_person, calibration_facts
+from runtime.offline.video_tracking import Heard, VideoInput, follow_clip, unseen
 from runtime.steps.together import viewer_of
 from runtime.unfinished.work import Course
 from viewer import track
 from viewer.landmarks.landmark_sources import Sources, oddities, outside_sources
-from viewer.room.background_source import FilmBackground, opening_of_view
+from viewer.room.background_source import VideoBackground, opening_of_view
 
 
 class Tracked(NamedTuple):
@@ -203,11 +203,11 @@ def _in_two_passes(
     """Track one camera in passes: the scale needs the whole clip, or the thesis's method is
     used."""
     view = clip.views[0]
-    reel = Reel(decoders.of[view.number], due=view.frames)
-    opening = opening_of_view(view, settings.silhouette, reel)
-    film = Film(clip, FilmBackground(opening.background, [], opening.odd))
+    frame_cache = FrameCache(decoders.of[view.number], due=view.frames)
+    opening = opening_of_view(view, settings.silhouette, frame_cache)
+    film = VideoInput(clip, VideoBackground(opening.background, [], opening.odd))
     heard = Heard(course.tell, work=course.work)
-    followed = follow_clip(film, settings, method, reel, heard)
+    followed = follow_clip(film, settings, method, frame_cache, heard)
     return Tracked(clip, followed.bodies, followed.facts)
 
 
@@ -218,9 +218,11 @@ def _prepared(
     clip, odd = looked.clip, [looked.warning] if looked.warning else []
     rig, alone = whole_rig(clip), len(clip.views) == 1
     known = body_of(settings, lambda own: track_clip(own, decoders).bodies)
-    reels = {view.number: Reel(decoders.of[view.number], due=view.frames) for view in clip.views}
+    frame_caches = {
+        view.number: FrameCache(decoders.of[view.number], due=view.frames) for view in clip.views
+    }
     viewers: dict[ViewerNumber, track.State] = {}
-    learnt = openings(clip, settings.silhouette, reels)
+    learnt = openings(clip, settings.silhouette, frame_caches)
     for view, opens in zip(clip.views, learnt, strict=True):
         odd += [opens.odd] if opens.odd else []
         viewers[view.number] = viewer_of(
@@ -231,13 +233,13 @@ def _prepared(
     source: ScaleSource | None = "person" if looked.found else None
     start = Start(alone, source, opening, frame_times(clip), uprights=uprights_of(clip))
     integrator = merge_state.init(rig, period_s, settings, method, start)
-    return Prepared(clip, reels, viewers, integrator, odd, time.perf_counter() - began)
+    return Prepared(clip, frame_caches, viewers, integrator, odd, time.perf_counter() - began)
 
 
 def _facts(ready: Prepared, done: Performance, sources: Sources) -> Facts:
     """For the summary: the input, the time taken, warnings."""
     clip, acts = ready.clip, ready.clip.meta.acts
-    endings = [(view, ready.reels[view.number].ending) for view in clip.views]
+    endings = [(view, ready.frame_caches[view.number].ending) for view in clip.views]
     cut_off = (shortfall(view, ending) for view, ending in endings)
     seen_odd = (*cut_off, unseen(done.bodies), *oddities(sources))
     odd = [*clip.warnings, *ready.odd, *filter(None, seen_odd)]

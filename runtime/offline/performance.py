@@ -10,7 +10,7 @@ from typing import Final, NamedTuple
 from common.bus.instant import instant_of
 from common.bus.messages import Body, Guide, View, ViewerNumber
 from common.video.clip_facts import Clip
-from common.video.frame_cache import Reel
+from common.video.frame_cache import FrameCache
 from integrator import diagnostics, merge_state
 from integrator.live_rig.live_calibration import LiveCalibration, Looking
 from integrator.live_rig.rig_solver import SolverAtOnce
@@ -44,7 +44,7 @@ class Prepared(NamedTuple):
     """A clip that is ready to be tracked."""
 
     clip: Clip
-    reels: dict[ViewerNumber, Reel]
+    frame_caches: dict[ViewerNumber, FrameCache]
     viewers: dict[ViewerNumber, track.State]
     integrator: merge_state.State
     odd: list[str]
@@ -101,7 +101,7 @@ def performed(
     bodies = work.messages(BODIES)
     before_s, began = going.spent["following"], time.perf_counter()
     with _side_by_side(len(clip.views)) as pool:
-        for frames in instants(clip, ready.reels, sources, going.starts):
+        for frames in instants(clip, ready.frame_caches, sources, going.starts):
             going, reports, body = _stepped(going, frames, calibration, pool)
             bodies.append(body)
             witness(frames, reports, body)

@@ -14,7 +14,7 @@ from calibration.board.board_rig import calibrated_by_board
 from calibration.paper.calibration import write_rig
 from common.atomic_file import replacing
 from common.rig.rig_file import CalibrationError
-from runtime.offline.board_films import looked_through
+from runtime.offline.board_videos import looked_through
 from runtime.terminal import bar, warn
 
 UNCOVERED: Final = 0.4

@@ -15,7 +15,7 @@ from common.rig.camera import Rig
 from common.rig.rig_file import CalibrationError, fitted
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
-from common.video.frame_cache import Reel
+from common.video.frame_cache import FrameCache
 from common.video.pictures import Reader
 from runtime.offline.rig_from_person import ON_TIME, sighting_of
 from viewer.landmarks.landmark_sources import outside_sources
@@ -56,7 +56,9 @@ def calibrated_by_clips(paths: Sequence[Path], given: Given) -> FoundByClips:
             if len(clip.views) != 2 or not all(view.frames for view in clip.views):
                 raise CalibrationError(f"{path} has not two recorded views: name clips of a pair")
             sizes |= {view.source_size for view in clip.views}
-            readers = {v.number: Reel(one) for v, one in zip(clip.views, decoders, strict=True)}
+            readers = {
+                v.number: FrameCache(one) for v, one in zip(clip.views, decoders, strict=True)
+            }
             with outside_sources(settings, clip.views) as sources:
                 sightings.append(sighting_of(clip, settings, method, readers, sources))
             is_told = settings.offset_s is not None

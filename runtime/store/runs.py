@@ -27,7 +27,7 @@ BELIEVED: Final[tuple[Status, ...]] = ("measuring", "tracking")
 """Statuses of a believed body: the views confirm it. A predicted body was confirmed a moment
 ago: it has a pose, with confidence 0."""
 
-NOBODY_SEEN: Final = (
+NO_PERSON_SEEN: Final = (
     "nobody was seen: the person must move, and be a sixth of the picture high at least"
 )
 """The warning for a run without a person in any frame."""

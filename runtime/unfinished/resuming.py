@@ -11,7 +11,7 @@ from rich.console import Console
 from common.config.part_settings import SettingsError
 from common.config.settings import Settings
 from common.npz_file import Facts
-from common.video.clip_sources import ClipError, footage_of
+from common.video.clip_sources import ClipError, sources_of
 from common.video.pictures import DecoderDied, Undecodable, is_recorded
 from runtime.store import journal
 from runtime.store.runs import RunError
@@ -117,5 +117,5 @@ def resumable(wanted: Wanted, console: Console) -> Iterator[Begun]:
 
 def _lasts(settings: Settings) -> bool:
     """Whether a second look would give the same result."""
-    of_files = all(is_recorded(view.source) for view in footage_of(settings))
+    of_files = all(is_recorded(view.source) for view in sources_of(settings))
     return of_files and settings.landmarks != "mediapipe"

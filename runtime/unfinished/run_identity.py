@@ -12,7 +12,7 @@ import msgspec
 from common.config.settings import LANDMARK_SOURCES, NETWORK, Settings
 from common.packages import PACKAGES, ROOT
 from common.source_digest import add, digest_of
-from common.video.clip_sources import ClipError, companions_folder, footage_of
+from common.video.clip_sources import ClipError, companions_folder, sources_of
 from common.video.clips import find_calibration
 from common.video.pictures import is_recorded
 
@@ -74,7 +74,7 @@ def tracker_id() -> str:
 
 def files_of(settings: Settings) -> Iterator[Path]:
     """All files read of a clip, in a fixed order."""
-    named = footage_of(settings)
+    named = sources_of(settings)
     for view in named:
         if not is_recorded(view.source):
             raise ClipError(f"camera {view.source} is no recorded clip: name a clip folder")

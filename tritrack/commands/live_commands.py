@@ -64,11 +64,11 @@ def live(
 
     Example: tritrack live configs/live.toml --out runs/monday
     """
-    from common.video.clip_sources import refuse_no_footage
+    from common.video.clip_sources import refuse_no_source
     from runtime.live.session import live as run_live
 
     own = config_file.load(settings_file)
-    refuse_no_footage(own, settings_file)
+    refuse_no_source(own, settings_file)
     given = overridden(own, mode, size, landmarks, offset)
     settings = waiting(given, wait)
     if not force:
@@ -80,10 +80,10 @@ def live(
 
 def _refuse_other_than_last(out: Path, settings: Settings) -> None:
     """Refuse to overwrite a run other than the last one, and report that one's replacement."""
-    from common.video.clip_sources import footage_of
+    from common.video.clip_sources import sources_of
     from runtime.store.other_run import other_than, refuse_other, run_of
 
-    now = run_of("live", [view.source for view in footage_of(settings)])
+    now = run_of("live", [view.source for view in sources_of(settings)])
     if out != LAST:
         refuse_other(out, now)
         return

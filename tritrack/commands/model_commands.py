@@ -74,7 +74,7 @@ def train(
     if film:
         if what != "landmarks":
             raise typer.BadParameter("only landmarks are learnt from videos: add --what landmarks")
-        _teach_on_films(film, teacher, out, json_wanted)
+        _teach_on_videos(film, teacher, out, json_wanted)
         return
     if what != "postures":
         _train_network(what, out, json_wanted)
@@ -130,12 +130,12 @@ def _train_network(
         tell(facts, json_wanted, f"{facts['pictures']} pictures learnt, written to {out}")
 
 
-def _teach_on_films(films: list[Path], teacher: str, out: Path, json_wanted: bool) -> None:
+def _teach_on_videos(films: list[Path], teacher: str, out: Path, json_wanted: bool) -> None:
     """Train the packaged landmark network on another pose estimator's output for videos."""
     refuse_without("train", "torch", "onnx", "onnxscript", "anny")
-    from lab.film_lessons.film_training import teach_on_films
+    from lab.video_lessons.video_training import teach_on_videos
 
-    facts = teach_on_films(films, teacher, out, console)
+    facts = teach_on_videos(films, teacher, out, console)
     line = f"better: {facts['verdict']}; written to {out}: name it in the settings, landmarks = ..."
     tell(facts, json_wanted, line)
 

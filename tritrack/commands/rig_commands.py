@@ -54,11 +54,11 @@ def person(
     """
     from calibration.paper.calibration import write_rig
     from common.config import config_file
-    from common.video.clip_sources import refuse_no_footage
+    from common.video.clip_sources import refuse_no_source
     from runtime.offline.rig_of_clips import Given, calibrated_by_clips
 
     for path in clips:
-        refuse_no_footage(config_file.load(path), path)
+        refuse_no_source(config_file.load(path), path)
     refuse_to_replace(out, force)
     rig, quality, clocks = calibrated_by_clips(clips, Given(stature, fov))
     write_rig(out, rig, quality)

@@ -15,7 +15,7 @@ from animator.marking.marking_page import LIVE, still_address
 from animator.marking.sheet import Pictures
 from common.config.picture_size import working_size
 from common.config.settings import Settings
-from common.video.clip_sources import NOTHING, ClipError, Footage, footage_of
+from common.video.clip_sources import NOTHING, ClipError, ViewSource, sources_of
 from common.video.clips import SAME_ASPECT, probed
 from common.video.decoding import Decoder
 from common.video.pictures import Decoded, DecoderDied, Image, Size, Source, Wanted, is_camera
@@ -124,7 +124,7 @@ def open_album(settings: Settings, console: Console) -> Iterator[Album]:
         ClipError, Undecodable, DecoderDied: When a source cannot be opened, or the views' pictures
             differ in shape.
     """
-    footage = footage_of(settings)
+    footage = sources_of(settings)
     if not footage:
         raise ClipError(NOTHING)
     with ExitStack() as doors:
@@ -160,7 +160,7 @@ def common_size(sizes: Sequence[Size]) -> Size:
     return working_size(first, BOUND)
 
 
-def _film(decoder: Decoder, view: Footage, size: Size, frames: int, console: Console) -> Film:
+def _film(decoder: Decoder, view: ViewSource, size: Size, frames: int, console: Console) -> Film:
     every = max(1, math.ceil(frames / MOST_STILLS))
     with bar(console) as progress:
         taken = islice(decoder.frames(view.source, size, Wanted(every)), MOST_STILLS)

@@ -13,8 +13,8 @@ from typing import Final, Literal, NamedTuple
 
 from rich.console import Console
 
-from animator.film import FilmError
 from animator.retouching.fitting import FitError
+from animator.video_file import VideoError
 from common.config.settings import Settings
 from common.notes.notes import Notes
 from runtime.store.run_exports import EXPORTS
@@ -143,5 +143,5 @@ def _fit(folder: Path, settings: Settings, notes: Notes, said: Connection) -> No
         with Decoder() as decoder:
             follow(job, folder, decoder, Console(quiet=True), begun, Begun(InMemory(), {}))
         said.send(Said("done", "fitted"))
-    except (*UNUSABLE, RunError, FilmError) as error:
+    except (*UNUSABLE, RunError, VideoError) as error:
         said.send(Said("failed", f"{error}; the run is as it was"))

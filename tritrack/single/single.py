@@ -20,14 +20,14 @@ from common.video.clip_sources import (
     CLIP_CAMERAS,
     ClipError,
     first_camera,
-    footage_of,
-    refuse_no_footage,
+    refuse_no_source,
+    sources_of,
 )
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
-from common.video.frame_cache import Reel, Told
+from common.video.frame_cache import FrameCache, Told
 from common.video.pictures import DecoderDied, Undecodable
-from runtime.offline.film_tracking import Film, Followed, Heard, follow_clip, follow_masks
+from runtime.offline.video_tracking import Followed, Heard, VideoInput, follow_clip, follow_masks
 from runtime.overrides import overridden
 from runtime.store.clip_paths import ClipsFailed
 from runtime.store.other_run import OtherRun, RunOf, refuse_other, run_of
@@ -41,7 +41,7 @@ from runtime.unfinished.work import InMemory, Work
 from tritrack.single.animation_files import write_files
 from tritrack.single.ledger import facts_of, ledger
 from tritrack.single.mask_file import MaskFileError, MaskSequence, is_mask_file, read_masks
-from tritrack.single.overlay_film import write_overlay
+from tritrack.single.overlay_video import write_overlay
 from viewer.room.background_source import LOOKED_AT, background_of_film
 
 PASSES: Final = ("learning the room", "cutting out", "posing", "drawing")
@@ -99,7 +99,7 @@ def single_all(
         SettingsError, ClipError, DecoderDied, Undecodable, MaskFileError, NotesError: When the only
             video cannot be used.
         ClipsFailed: At the end, when any of several could not be used.
-        RunError, FilmError: When the results cannot be written.
+        RunError, VideoError: When the results cannot be written.
     """
     done: Facts = {}
     with Decoder() as decoder, bar(console) as progress:
@@ -134,7 +134,7 @@ def _refuse_the_same(path: Path, folder: Path, there: bool) -> None:
 
 def _tell_of_two(job: Job, console: Console) -> None:
     """Which of two cameras is tracked."""
-    if len(footage_of(job.settings)) > 1:
+    if len(sources_of(job.settings)) > 1:
         say(
             console,
             f"{job.path}: camera 1 alone is followed; all of them: tritrack track {job.path}",
@@ -161,7 +161,7 @@ def job_of(path: Path, given: Given, settings: Settings) -> Job:
         return Job(path, settings, masks, load_notes(given.notes) if given.notes else Notes())
     if path.is_dir() or path.suffix == ".toml":
         own = load(path)
-        refuse_no_footage(own, path)
+        refuse_no_source(own, path)
         beside = path / "cam1" if path.is_dir() else path
     else:
         cameras = {CLIP_CAMERAS[0]: CameraSettings(source=str(path))}
@@ -179,7 +179,7 @@ def job_of(path: Path, given: Given, settings: Settings) -> Job:
 
 def _run_of(job: Job) -> RunOf:
     """Its videos; a clip folder's second one does not belong to them."""
-    films = [view.source for view in footage_of(job.settings)][:1]
+    films = [view.source for view in sources_of(job.settings)][:1]
     return run_of("single", [str(job.path)] if job.masks is not None else films)
 
 
@@ -207,7 +207,7 @@ def follow(
 
     Raises:
         ClipError, DecoderDied: When it cannot be used.
-        RunError, FilmError: When the folder cannot be written.
+        RunError, VideoError: When the folder cannot be written.
     """
     found = _found(job, decoder, begun, run.work)
     with writing(folder), mapped_poses(found.bodies, folder) as arrays:
@@ -233,12 +233,12 @@ def _found(job: Job, decoder: Decoder, begun: Callable[[str], Tell], work: Work)
     if job.masks is not None:
         return follow_masks(job.masks.name, job.masks.reports, job.settings, begun("posing"))
     clip = open_clip(job.settings, decoder, (1,))
-    view, reel = clip.views[0], Reel(decoder, due=clip.views[0].frames)
-    looking = Told(reel, min(view.frames, LOOKED_AT), begun("learning the room"))
+    view, frame_cache = clip.views[0], FrameCache(decoder, due=clip.views[0].frames)
+    looking = Told(frame_cache, min(view.frames, LOOKED_AT), begun("learning the room"))
     background = background_of_film(view, job.settings.silhouette, looking)
-    film, method = Film(clip, background, job.notes), METHODS[job.settings.mode]
+    film, method = VideoInput(clip, background, job.notes), METHODS[job.settings.mode]
     heard = Heard(begun("cutting out"), begun("posing"), work)
-    return follow_clip(film, job.settings, method, reel, heard)
+    return follow_clip(film, job.settings, method, frame_cache, heard)
 
 
 def mean_confidence(arrays: Arrays) -> float:

@@ -7,7 +7,7 @@ from pathlib import Path
 from common.bus.messages import ViewerNumber
 from common.config.settings import Settings
 from common.video.clip_facts import ClipView
-from common.video.clip_sources import footage_of
+from common.video.clip_sources import sources_of
 from viewer.landmarks.keypoint_files import KeypointFiles
 from viewer.landmarks.landmark_looks import refuse_no_network
 from viewer.landmarks.mediapipe_source import MediaPipe, refuse_where_missing
@@ -56,7 +56,7 @@ def refuse_landmarks(settings: Settings, views: Sequence[ClipView]) -> None:
 
 
 def _files(settings: Settings, views: Sequence[ClipView]) -> dict[ViewerNumber, KeypointFiles]:
-    alone = len(footage_of(settings)) == 1
+    alone = len(sources_of(settings)) == 1
     folder = Path(settings.landmarks)
     return {view.number: KeypointFiles(folder, view, alone) for view in views}
 

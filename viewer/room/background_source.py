@@ -57,7 +57,7 @@ class Opening(NamedTuple):
     """Of the first frame, where all of the clip was looked at and shows who is there."""
 
 
-class FilmBackground(NamedTuple):
+class VideoBackground(NamedTuple):
     """The picture of one camera without people, all through a video."""
 
     background: Background
@@ -195,7 +195,7 @@ def _name_of(view: ClipView) -> str:
 
 def background_of_film(
     view: ClipView, settings: SilhouetteSettings, decoder: Reader
-) -> FilmBackground:
+) -> VideoBackground:
     """The background of a video, from all over it where that shows enough, and what changes.
 
     Light changes through a video, and with it more than a gain can follow; an empty opening knows
@@ -209,13 +209,13 @@ def background_of_film(
     """
     background, odd, _ = opening_of_view(view, settings, decoder)
     if isinstance(view.source, int):
-        return FilmBackground(background, [], odd)
+        return VideoBackground(background, [], odd)
     sample = list(_looked_at(view, settings, decoder)[1])
     if not (odd or view.background):
         busy = learn_uncovered(sample)
         background = busy if busy.uncertain.mean() < LEFT_HIDDEN else background
     patches = patches_of(background, sample, _stride(view), view.fps)
-    return FilmBackground(background, patches, odd and _estimated(view, FILM_OPTION))
+    return VideoBackground(background, patches, odd and _estimated(view, FILM_OPTION))
 
 
 def _pictures(decoder: Reader, source: Source, view: ClipView) -> Iterator[Image]:

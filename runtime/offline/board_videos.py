@@ -8,7 +8,7 @@ from rich.progress import Progress
 
 from calibration.board.board import BOARDS, Board
 from calibration.board.board_corners import corners_in
-from calibration.board.still_board import Film
+from calibration.board.still_board import BoardVideo
 from common.rig.rig_file import CalibrationError
 from common.video.decoding import Decoder
 from common.video.frame_times import timed
@@ -27,7 +27,7 @@ take long."""
 class Looked(NamedTuple):
     """The corners found in a video."""
 
-    film: Film
+    film: BoardVideo
     board: Board
     picture: Image
     """Its first picture."""
@@ -74,7 +74,7 @@ def _looked(decoder: Decoder, video: str, boards: Sequence[Board], tell: Tell) -
     if board is None or first is None:
         raise CalibrationError(f"no board is found in {video}: {_cure(boards)}")
     return Looked(
-        Film(video, (info.width, info.height), np.array(times), np.array(px)), board, first
+        BoardVideo(video, (info.width, info.height), np.array(times), np.array(px)), board, first
     )
 
 

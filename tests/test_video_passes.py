@@ -25,23 +25,23 @@ from common.raster.silhouette_report import silhouette_view
 from common.rig.camera import Camera, Rig
 from common.video.clip_facts import Clip, ClipView, Meta
 from common.video.clip_sources import ClipError
-from runtime.offline import film_passes
-from runtime.offline.film_passes import (
+from runtime.offline import video_passes
+from runtime.offline.video_passes import (
     CUTTING,
     POSING,
     REPORTS,
     Cutting,
-    FilmFacts,
     FirstPass,
     Posing,
     Stand,
+    VideoFacts,
     bodies_of,
     silhouettes_of,
 )
 from runtime.unfinished.unfinished_run import BODIES
 from runtime.unfinished.work import Course
 from viewer.captured_frame import CapturedFrame
-from viewer.room.background_source import FilmBackground
+from viewer.room.background_source import VideoBackground
 from viewer.track import Setup
 
 SIZE = (160, 120)
@@ -58,7 +58,7 @@ def silhouettes(clip: Path) -> list[View]:
 
 
 def posed(reports: list[View], mode: Mode = "default", notes: Notes = Notes()) -> list[Body]:
-    film = FilmFacts(Settings(mode=mode), METHODS[mode], 1, 1 / 15, None, notes)
+    film = VideoFacts(Settings(mode=mode), METHODS[mode], 1, 1 / 15, None, notes)
     return list(bodies_of(reports, film).bodies)
 
 
@@ -125,7 +125,7 @@ def test_a_film_of_any_length_is_not_held_in_memory(silhouettes: list[View]) -> 
     let_go, passed = Lent(silhouettes[20:24]), Lent(silhouettes[20:24])
     for _ in let_go:
         pass
-    film = FilmFacts(Settings(), METHODS["default"], 1, 1 / 15, None, Notes())
+    film = VideoFacts(Settings(), METHODS["default"], 1, 1 / 15, None, Notes())
     bodies_of(passed, film)
     assert len(passed.kept) >= len(let_go.kept)
     assert max(passed.kept) <= max(let_go.kept)
@@ -135,8 +135,8 @@ CLIP = Clip("film", (ClipView(2, "a.mp4", SIZE, SIZE, 15.0, 10),), 1, None, Meta
 THESIS = METHODS["thesis"]
 
 
-def film_of(**more: Any) -> FilmFacts:
-    return FilmFacts(Settings(), METHODS["default"], 1, 1 / 15, None)._replace(**more)
+def film_of(**more: Any) -> VideoFacts:
+    return VideoFacts(Settings(), METHODS["default"], 1, 1 / 15, None)._replace(**more)
 
 
 class Left:
@@ -186,14 +186,14 @@ def looks(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
         asked.append((*given, more))
         return 100
 
-    monkeypatch.setattr(film_passes, "recorded", frames)
+    monkeypatch.setattr(video_passes, "recorded", frames)
     monkeypatch.setattr("viewer.track.look", look)
     monkeypatch.setattr("viewer.track.init", init)
-    monkeypatch.setattr("runtime.offline.film_passes.time.perf_counter", lambda: next(ticks))
+    monkeypatch.setattr("runtime.offline.video_passes.time.perf_counter", lambda: next(ticks))
     return asked
 
 
-BEHIND: Any = FilmBackground("room", ["patch"], "")  # type: ignore[arg-type,list-item]
+BEHIND: Any = VideoBackground("room", ["patch"], "")  # type: ignore[arg-type,list-item]
 
 
 def test_the_first_pass_looks_at_every_frame_and_saves_where_it_is(looks: list[Any]) -> None:
@@ -237,10 +237,10 @@ def test_a_film_in_which_most_of_the_picture_changes_is_refused(
         reports.append(silhouette_view(1, mask))
     if refused:
         with pytest.raises(ClipError, match=r"^a\.mp4: most of the picture changes, so its camera"):
-            film_passes._refuse_a_moving_camera(reports, "a.mp4")
+            video_passes._refuse_a_moving_camera(reports, "a.mp4")
     else:
-        film_passes._refuse_a_moving_camera(reports, "a.mp4")
-    film_passes._refuse_a_moving_camera(reports[3:], "a.mp4")
+        video_passes._refuse_a_moving_camera(reports, "a.mp4")
+    video_passes._refuse_a_moving_camera(reports[3:], "a.mp4")
 
 
 class Poses:
@@ -250,12 +250,12 @@ class Poses:
         self.calmed: list[Any] = []
         ticks = itertools.count(10.0)
         self.state: Any = SimpleNamespace(rig=RIG, uprights=("one", "two"))
-        monkeypatch.setattr(film_passes, "_begun", lambda *_: ("viewer", self.state))
-        monkeypatch.setattr(film_passes, "_posed", self.posed)
-        monkeypatch.setattr(film_passes, "calmed", self.calm)
-        monkeypatch.setattr("runtime.offline.film_passes.time.perf_counter", lambda: next(ticks))
+        monkeypatch.setattr(video_passes, "_begun", lambda *_: ("viewer", self.state))
+        monkeypatch.setattr(video_passes, "_posed", self.posed)
+        monkeypatch.setattr(video_passes, "calmed", self.calm)
+        monkeypatch.setattr("runtime.offline.video_passes.time.perf_counter", lambda: next(ticks))
 
-    def posed(self, at: Posing, report: View, _: FilmFacts) -> tuple[Posing, Any]:
+    def posed(self, at: Posing, report: View, _: VideoFacts) -> tuple[Posing, Any]:
         return at._replace(guide=report.frame), f"body {report.frame}"  # type: ignore[arg-type]
 
     def calm(self, *given: Any) -> list[str]:
@@ -325,7 +325,7 @@ def test_each_frame_is_told_by_its_own_viewer_with_what_the_user_says(
     monkeypatch.setattr("integrator.merge.step", step)
     report = told(1)[0]
     at: Any = Posing("viewer", "integrator", FirstPass(), guide, 2.0)  # type: ignore[arg-type]
-    now, body = film_passes._posed(at, report, film)
+    now, body = video_passes._posed(at, report, film)
     going: Any = Posing("viewer on", "integrator on", FirstPass(), "guide on", 2.0)  # type: ignore[arg-type]
     assert [now, body] == [going, "body"]
     (viewer, seen, mask, by), (state, pair, annotations) = asked
@@ -334,7 +334,7 @@ def test_each_frame_is_told_by_its_own_viewer_with_what_the_user_says(
     assert pair == (Instant((report, None)) if number == 1 else Instant((None, report)))
     assert annotations.orientation == ("left" if oriented else None)
     assert annotations.joints_px == {"l_wrist": (20.0, 15.0)}
-    now, _ = film_passes._posed(at._replace(guide=None), report, film)
+    now, _ = video_passes._posed(at._replace(guide=None), report, film)
     assert asked[2][3] is None
 
 
@@ -357,11 +357,11 @@ def test_the_scale_is_told_by_whole_silhouettes_of_all_of_the_film(
         asked.append(of)
         return camera
 
-    monkeypatch.setattr(film_passes, "camera_of_sights", camera_of_sights)
+    monkeypatch.setattr(video_passes, "camera_of_sights", camera_of_sights)
     reports = [standing(10, 90), standing(12, 93, cut=True), standing(0, 0), standing(14, 96)]
     settings = Settings(body=BodySettings(stature_m=1.9))
     film = film_of(settings=settings, method=method, period_s=0.04)
-    viewer, state = film_passes._begun(reports, film)
+    viewer, state = video_passes._begun(reports, film)
     ((size, sights, stature_m, tilts_deg),) = asked
     assert (size, stature_m) == (SIZE, 1.9)
     assert sights.tolist() == [[10.0, 90.0], [14.0, 96.0]]
@@ -370,18 +370,18 @@ def test_the_scale_is_told_by_whole_silhouettes_of_all_of_the_film(
     assert (state.scale_source, state.alone) == ("assumed", True)
     assert state.person.body.bdp == thesis_bdp(1.9)
     assert viewer.setup == Setup(1, None, settings, method, alone=True)
-    _, state = film_passes._begun(reports, film._replace(camera=RIG.cameras[1]))
+    _, state = video_passes._begun(reports, film._replace(camera=RIG.cameras[1]))
     assert len(asked) == 1
     assert state.rig == Rig(*SIZE, (RIG.cameras[1],) * 2)
     assert (state.scale_source, state.person.body.bdp) == ("calibrated", None)
 
 
 def test_where_all_are_cut_these_tell_the_camera_and_of_nobody_the_picture() -> None:
-    cut = [film_passes._stand_of(person_of(standing(12, 93, cut=True)))]
-    assert film_passes._sights(cut, SIZE).tolist() == [[12.0, 93.0]]
-    assert film_passes._sights([], SIZE).tolist() == [[0.0, 120.0]]
+    cut = [video_passes._stand_of(person_of(standing(12, 93, cut=True)))]
+    assert video_passes._sights(cut, SIZE).tolist() == [[12.0, 93.0]]
+    assert video_passes._sights([], SIZE).tolist() == [[0.0, 120.0]]
     lies = Stand((50.0, 70.0), whole=True, upright=False)
     up = Stand((10.0, 90.0), whole=True, upright=True)
     up_but_cut = Stand((11.0, 91.0), whole=False, upright=True)
-    assert film_passes._sights([lies, up, up_but_cut], SIZE).tolist() == [[10.0, 90.0]]
-    assert film_passes._sights([lies, up_but_cut], SIZE).tolist() == [[50.0, 70.0]]
+    assert video_passes._sights([lies, up, up_but_cut], SIZE).tolist() == [[10.0, 90.0]]
+    assert video_passes._sights([lies, up_but_cut], SIZE).tolist() == [[50.0, 70.0]]

@@ -13,7 +13,7 @@ from common.body.proportions import body_vector, thesis_bdp
 from common.bus.messages import Body
 from common.notes.notes import Note, Notes
 from common.rig.camera import paper_rig, project
-from runtime.offline.film_smoothing import (
+from runtime.offline.video_smoothing import (
     ACCELERATION_M_S2,
     NOISE_M,
     START_SPEED_M_S,

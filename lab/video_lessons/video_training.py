@@ -14,7 +14,6 @@ from rich.progress import TaskID
 from torch import nn
 
 from common.npz_file import Facts
-from lab.film_lessons.film_examples import Looked, looked_through
 from lab.landmark_lessons import landmark_loss, work_of
 from lab.landmark_lessons.landmark_file import fill, weights_of, write_network
 from lab.landmark_lessons.landmark_layers import LandmarkNetwork
@@ -28,6 +27,7 @@ from lab.landmark_lessons.landmark_learning import (
 )
 from lab.landmark_lessons.picture_store import Backdrops, Part, PictureStore, draw
 from lab.training.training import TrainingError
+from lab.video_lessons.video_examples import Looked, looked_through
 from runtime.terminal import bar
 from synth.picture.composites import Composite, composite
 from synth.picture.picture_examples import PictureExample
@@ -35,7 +35,7 @@ from viewer.landmarks.landmark_looks import SHIPPED
 
 FIRST: Final = 30_000_000
 """Seed of the first synthetic person: outside the packaged network's training data."""
-FILM_SHARE: Final = 0.5
+VIDEO_SHARE: Final = 0.5
 """Number of each kind of example in a batch."""
 RATE, WARM, MEAN_OVER, KEEP_EVERY = 1e-3, 20, 50, 50
 """As in `landmark_training`: the network is trained already."""
@@ -94,7 +94,7 @@ class Wanted(NamedTuple):
     plan: Plan
 
 
-def teach_on_films(
+def teach_on_videos(
     films: Sequence[Path], teacher: str, out: Path, console: Console, plan: Plan = Plan()
 ) -> Facts:
     """Fine-tune the packaged network on videos and write it if it improves. Examples and progress
@@ -162,7 +162,7 @@ def composed(wanted: Wanted) -> list[Composite]:
     backdrops, rng = _backdrops(wanted.plan), np.random.default_rng([wanted.at, 83])
     return [
         composite(
-            (films if rng.random() < FILM_SHARE else made_up).any(rng),
+            (films if rng.random() < VIDEO_SHARE else made_up).any(rng),
             lambda: made_up.any(rng),
             lambda: backdrops.any(rng),
             rng,

@@ -16,23 +16,23 @@ from common.npz_file import Facts
 from common.rig.camera import PAPER_ROTATIONS, Camera
 from common.video.clip_facts import Clip, clip_summary, shortfall, unread_facts
 from common.video.pictures import Reader
-from runtime.offline.film_passes import (
+from runtime.offline.video_passes import (
     CUTTING,
     POSING,
     REPORTS,
     Cutting,
-    FilmFacts,
     FirstPass,
     Posing,
+    VideoFacts,
     bodies_of,
     silhouettes_of,
 )
-from runtime.store.runs import NOBODY_SEEN
+from runtime.store.runs import NO_PERSON_SEEN
 from runtime.terminal import Tell
 from runtime.unfinished.work import Course, InMemory, Work
 from viewer.background.background import Background
 from viewer.landmarks.landmark_sources import oddities, outside_sources
-from viewer.room.background_source import FilmBackground
+from viewer.room.background_source import VideoBackground
 
 FITS: Final = 0.6
 """S from which on a pose fits its silhouette."""
@@ -72,11 +72,11 @@ class Followed(NamedTuple):
         return np.array(PAPER_ROTATIONS[0] if self.camera is None else self.camera.R)
 
 
-class Film(NamedTuple):
+class VideoInput(NamedTuple):
     """The input: a clip of one view, and what is known of it."""
 
     clip: Clip
-    background: FilmBackground
+    background: VideoBackground
     notes: Notes = Notes()
     """The user's inputs."""
 
@@ -90,7 +90,7 @@ class Heard(NamedTuple):
 
 
 def follow_clip(
-    film: Film, settings: Settings, method: Method, reader: Reader, heard: Heard = Heard()
+    film: VideoInput, settings: Settings, method: Method, reader: Reader, heard: Heard = Heard()
 ) -> Followed:
     """Track a clip of one view with a known background.
 
@@ -104,7 +104,7 @@ def follow_clip(
     camera = clip.rig.cameras[0] if clip.rig is not None else None
     scale = view.filed_size[0] / view.source_size[0]
     period_s = clip.every / view.fps
-    known = FilmFacts(settings, method, view.number, period_s, camera, notes, scale)
+    known = VideoFacts(settings, method, view.number, period_s, camera, notes, scale)
     left = heard.work.resumed(POSING, Posing)
     if left is None:
         reports, first = _looked_through(film, known, reader, heard)
@@ -134,7 +134,7 @@ def _camera_facts(assumed: Camera | None) -> Facts:
 
 
 def _looked_through(
-    film: Film, known: FilmFacts, reader: Reader, heard: Heard
+    film: VideoInput, known: VideoFacts, reader: Reader, heard: Heard
 ) -> tuple[Sequence[View], FirstPass]:
     """The first pass, and its results."""
     clip, work, began = film.clip, heard.work, time.perf_counter()
@@ -152,9 +152,9 @@ def follow_masks(
 ) -> Followed:
     """The same for silhouettes from a file."""
     began, least_share = time.perf_counter(), settings.silhouette.min_height_share
-    reports = [_or_nobody(report, least_share) for report in reports]
+    reports = [_without_low_regions(report, least_share) for report in reports]
     period_s = reports[1].captured_s - reports[0].captured_s if len(reports) > 1 else 0.04
-    film = FilmFacts(settings, METHODS[settings.mode], 1, period_s, None)
+    film = VideoFacts(settings, METHODS[settings.mode], 1, period_s, None)
     bodies, camera = bodies_of(reports, film, Course(tell))
     facts = {
         "clip": name,
@@ -166,7 +166,7 @@ def follow_masks(
     return Followed(bodies, reports, period_s, camera, None, None, facts)
 
 
-def _or_nobody(report: View, least_share: float) -> View:
+def _without_low_regions(report: View, least_share: float) -> View:
     """A report; without a person where its silhouette is lower than one."""
     person = report.person
     if person is None or person.box.bottom + 1 - person.box.top >= least_share * report.height:
@@ -186,7 +186,7 @@ def _times(frames: int, **spent_s: float) -> Facts:
 
 def unseen(bodies: Sequence[Body]) -> str:
     """The warning where no frame shows a person; "" otherwise."""
-    return "" if any(body.joints_m for body in bodies) else NOBODY_SEEN
+    return "" if any(body.joints_m for body in bodies) else NO_PERSON_SEEN
 
 
 def doubtful(bodies: Sequence[Body]) -> str:

@@ -1,4 +1,4 @@
-"""Available video codecs: `python -m animator.film_codec W H` tries them and prints the best."""
+"""Available video codecs: `python -m animator.video_codec W H` tries them and prints the best."""
 
 import subprocess
 import sys

@@ -7,8 +7,8 @@ from staging import RIG, report, silhouettes, standing
 from common.body.observation import Landmarks
 from common.bus.instant import TwoViews
 from common.bus.messages import View, ViewerNumber
+from integrator.live_rig.recent_views import State, stand_before, step
 from integrator.live_rig.rig_job import track_of_bytes
-from integrator.live_rig.seen_lately import State, stand_before, step
 
 MASKS = silhouettes(standing())
 

@@ -12,9 +12,9 @@ from animator.overlay import SHOWN
 from common.config.picture_size import working_size
 from common.rig.camera import Camera, Matrix
 from common.video.pictures import Wanted
-from runtime.offline.film_tracking import Followed
-from tritrack.single import overlay_film
-from tritrack.single.overlay_film import STANDS_S, shown_times
+from runtime.offline.video_tracking import Followed
+from tritrack.single import overlay_video
+from tritrack.single.overlay_video import STANDS_S, shown_times
 
 
 @pytest.mark.parametrize("rate_hz", [15.0, 24_000 / 1001, 25.0, 30.0, 59.94])
@@ -72,10 +72,10 @@ def report_of(captured_s: float) -> Any:
 def drawing(monkeypatch: pytest.MonkeyPatch) -> Any:
     """What each frame is drawn from."""
     noted: Any = []
-    monkeypatch.setattr(overlay_film, "overlay", lambda *given: noted.append(given) or given[0])
-    monkeypatch.setattr(overlay_film, "mask_of", lambda report: f"silhouette {report.captured_s}")
+    monkeypatch.setattr(overlay_video, "overlay", lambda *given: noted.append(given) or given[0])
+    monkeypatch.setattr(overlay_video, "mask_of", lambda report: f"silhouette {report.captured_s}")
     monkeypatch.setattr(
-        overlay_film, "as_worked_on", lambda joints_px, _: joints_px + np.array([1.0, 2.0])
+        overlay_video, "as_worked_on", lambda joints_px, _: joints_px + np.array([1.0, 2.0])
     )
     return noted
 
@@ -95,8 +95,8 @@ def test_joints_are_drawn_in_the_pictures_own_pixels_and_the_caption_tells_the_f
         status="tracking",
     )
     picture = np.zeros((480, 640, 3), np.uint8)
-    overlay_film._drawn(found, report_of(0.5), body, picture)
-    overlay_film._drawn(found, report_of(0.6), body_of(8), picture)
+    overlay_video._drawn(found, report_of(0.5), body, picture)
+    overlay_video._drawn(found, report_of(0.6), body_of(8), picture)
     (_, silhouette, px, m, confidence, caption), (_, _, no_px, no_m, no_sure, other) = noted
     assert silhouette == "silhouette 0.5"
     assert px == pytest.approx(4 * (joints_px + np.array([1.0, 2.0])))
@@ -121,16 +121,16 @@ def test_the_film_shows_each_picture_as_long_as_it_stood_and_says_how_far_it_is(
     """The usual gap is that of the film; of one picture the clip's own period is."""
     told: list[float] = []
     pictures = "abcd"[: len(times_s)]
-    monkeypatch.setattr(overlay_film, "overlaid", lambda found, decoder: iter(pictures))
+    monkeypatch.setattr(overlay_video, "overlaid", lambda found, decoder: iter(pictures))
     monkeypatch.setattr(
-        overlay_film, "shown_times", lambda time_s, _: [2] * (len(time_s) - 1) + [1]
+        overlay_video, "shown_times", lambda time_s, _: [2] * (len(time_s) - 1) + [1]
     )
     monkeypatch.setattr(
-        overlay_film, "write_film", lambda path, drawn, rate: (path, [*drawn], rate)
+        overlay_video, "write_video", lambda path, drawn, rate: (path, [*drawn], rate)
     )
     found: Any = SimpleNamespace(reports=[report_of(each) for each in times_s], period_s=0.3)
     decoder: Any = None
-    written: Any = overlay_film.write_overlay(found, Path("out"), decoder, told.append)
+    written: Any = overlay_video.write_overlay(found, Path("out"), decoder, told.append)
     path, drawn, rate = written
     assert (path, "".join(drawn), rate) == (Path("out"), shown, pytest.approx(rate_hz))
     assert told == [(n + 1) / len(times_s) for n in range(len(times_s))]
@@ -147,11 +147,11 @@ def test_masks_are_drawn_on_paper_and_clips_on_their_own_frames_upright(
         return iter([SimpleNamespace(picture=n) for n in range(2)])
 
     decoder: Any = SimpleNamespace(frames=frames)
-    papers = list(overlay_film._pictures(of_masks, decoder))
+    papers = list(overlay_video._pictures(of_masks, decoder))
     assert [paper.shape for paper in papers] == [(30, 40, 3)] * 3
     assert all((paper == 255).all() for paper in papers)
     view = SimpleNamespace(source="a.mp4", upright_source=(720, 1280), quarters=3)
     of_clip: Any = SimpleNamespace(clip=SimpleNamespace(views=(view, None), every=2))
-    assert list(overlay_film._pictures(of_clip, decoder)) == [0, 1]
+    assert list(overlay_video._pictures(of_clip, decoder)) == [0, 1]
     size = working_size((720, 1280), SHOWN)
     assert asked == [("a.mp4", size, Wanted(2, quarters=3))]

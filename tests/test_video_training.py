@@ -22,7 +22,7 @@ def lesson(clip: Path, tmp_path_factory: pytest.TempPathFactory) -> Any:
     """A film, its teacher, a folder, and how little is shown."""
     for extra in ("torch", "onnx", "onnxscript"):
         pytest.importorskip(extra, reason="the extra `train` is not installed")
-    from lab.film_lessons.film_training import Plan
+    from lab.video_lessons.video_training import Plan
 
     folder = tmp_path_factory.mktemp("lesson")
     teacher = keypoints_of(clip, 1, folder / "keypoints")
@@ -33,18 +33,18 @@ def lesson(clip: Path, tmp_path_factory: pytest.TempPathFactory) -> Any:
 def test_what_became_better_is_written_what_did_not_is_not_and_nothing_is_done_twice(
     lesson: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from lab.film_lessons import film_training
+    from lab.video_lessons import video_training
 
     film, teacher, folder, plan = lesson
-    monkeypatch.setattr(film_training, "FEWEST", 20)
+    monkeypatch.setattr(video_training, "FEWEST", 20)
     out, quiet = folder / "mine.onnx", Console(quiet=True)
-    monkeypatch.setattr(film_training, "FORGETS", 0.0)
+    monkeypatch.setattr(video_training, "FORGETS", 0.0)
     with pytest.raises(TrainingError, match="no better, so nothing is written: joints"):
-        film_training.teach_on_films([film], teacher, out, quiet, plan)
+        video_training.teach_on_videos([film], teacher, out, quiet, plan)
     assert not out.exists()
     kept = (folder / "mine.onnx.work" / "learnt.pt").stat().st_mtime_ns
-    monkeypatch.setattr(film_training, "FORGETS", 2.0)
-    facts = film_training.teach_on_films([film], teacher, out, quiet, plan)
+    monkeypatch.setattr(video_training, "FORGETS", 2.0)
+    facts = video_training.teach_on_videos([film], teacher, out, quiet, plan)
     assert (folder / "mine.onnx.work" / "learnt.pt").stat().st_mtime_ns == kept
     assert facts["film"][1] < facts["film"][0]
     refuse_no_network(str(out))
@@ -54,9 +54,9 @@ def test_what_became_better_is_written_what_did_not_is_not_and_nothing_is_done_t
 def training() -> Any:
     """The module, also where the extra `train` is not installed."""
     with importable("onnx"):
-        from lab.film_lessons import film_training
+        from lab.video_lessons import video_training
 
-        return film_training
+        return video_training
 
 
 def test_it_is_better_that_is_so_on_the_films_and_forgot_nothing(training: Any) -> None:
@@ -95,7 +95,7 @@ def test_the_shipped_network_is_judged_on_the_same_as_the_taught_one(
     monkeypatch.setattr(training, "_off", off)
     monkeypatch.setattr(training, "write_network", lambda *given: noted.append(given))
     out, films = tmp_path / "mine.onnx", [Path("a.mp4"), Path("b.mp4")]
-    facts = training.teach_on_films(films, "mediapipe", out, QUIET, plan)
+    facts = training.teach_on_videos(films, "mediapipe", out, QUIET, plan)
     work = tmp_path / "mine.onnx.work"
     wanted = training.Wanted((Path("learnt0"), Path("learnt1")), tuple(people[:2]), 0, plan)
     held = training.Wanted((Path("held0"), Path("held1")), (people[2],), 0, plan)
@@ -116,7 +116,7 @@ def test_the_shipped_network_is_judged_on_the_same_as_the_taught_one(
     }
     offs["mean"] = (0.07, 0.05)
     with pytest.raises(TrainingError, match=r"nothing is written: joints 6\.0 -> 7\.0"):
-        training.teach_on_films(films, "mediapipe", out, QUIET, plan)
+        training.teach_on_videos(films, "mediapipe", out, QUIET, plan)
     assert noted[-1] == ("mean", held)
 
 

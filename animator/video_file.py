@@ -10,7 +10,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from animator.film_codec import CODECS, Codec, best_codec, pictures_in
+from animator.video_codec import CODECS, Codec, best_codec, pictures_in
 from common.atomic_file import replacing
 
 Picture = NDArray[np.uint8]
@@ -21,18 +21,18 @@ FINEST_HZ: Final = 65_535
 digits."""
 
 
-class FilmError(RuntimeError):
+class VideoError(RuntimeError):
     """A video that cannot be written: the text names it and the cure."""
 
 
-class Film(NamedTuple):
+class WrittenVideo(NamedTuple):
     """A written video."""
 
     path: Path
     codec: Codec
 
 
-def write_film(path: Path, pictures: Iterable[Picture], fps: float) -> Film:
+def write_video(path: Path, pictures: Iterable[Picture], fps: float) -> WrittenVideo:
     """Write a video with the best codec of this machine; it replaces the old file once complete.
 
     Args:
@@ -42,24 +42,24 @@ def write_film(path: Path, pictures: Iterable[Picture], fps: float) -> Film:
         fps: Pictures a second.
 
     Raises:
-        FilmError: When it cannot be written; the old file is unchanged then.
+        VideoError: When it cannot be written; the old file is unchanged then.
     """
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         coming = iter(pictures)
         first = next(coming, None)
         if first is None:
-            raise FilmError("it got no picture")
+            raise VideoError("it got no picture")
         codec = best_codec((first.shape[1], first.shape[0]))
         with replacing(_named(path, codec)) as new:
             _write(new, chain([first], coming), codec, fps)
         for other in CODECS:
             if other.suffix != codec.suffix:
                 _named(path, other).unlink(missing_ok=True)
-        return Film(_named(path, codec), codec)
-    except (OSError, FilmError) as error:
+        return WrittenVideo(_named(path, codec), codec)
+    except (OSError, VideoError) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        raise FilmError(
+        raise VideoError(
             f"cannot write {path}: {reason}; free some space or name another folder"
         ) from error
 
@@ -72,7 +72,7 @@ def _write(path: Path, pictures: Iterable[Picture], codec: Codec, fps: float) ->
             code, size = cv2.VideoWriter.fourcc(*codec.code), own
             writer = cv2.VideoWriter(str(path), codec.by, code, writable_hz(fps), size)
         if own != size:
-            raise FilmError(f"a picture of {own} does not follow those of {size}")
+            raise VideoError(f"a picture of {own} does not follow those of {size}")
         writer.write(picture)
         due += 1
     if writer is not None:
@@ -80,7 +80,7 @@ def _write(path: Path, pictures: Iterable[Picture], codec: Codec, fps: float) ->
     # OpenCV does not report a full disk
     kept = pictures_in(path, codec)
     if kept != due:
-        raise FilmError(f"only {kept} of {due} pictures could be written")
+        raise VideoError(f"only {kept} of {due} pictures could be written")
 
 
 def writable_hz(fps: float) -> float:

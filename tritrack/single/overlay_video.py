@@ -7,8 +7,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from animator.film import Film, Picture, write_film
 from animator.overlay import SHOWN, overlay
+from animator.video_file import Picture, WrittenVideo, write_video
 from common.body.body import Vector
 from common.bus.messages import Body, View
 from common.config.picture_size import working_size
@@ -16,14 +16,14 @@ from common.raster.silhouette_report import mask_of
 from common.rig.upright_camera import as_worked_on
 from common.video.decoding import Decoder
 from common.video.pictures import Wanted
-from runtime.offline.film_tracking import Followed
+from runtime.offline.video_tracking import Followed
 from runtime.terminal import Tell
 
 STANDS_S: Final = 5.0
 """Longest display of a picture in the overlay, seconds, however long the gap after it."""
 
 
-def write_overlay(found: Followed, path: Path, decoder: Decoder, tell: Tell) -> Film:
+def write_overlay(found: Followed, path: Path, decoder: Decoder, tell: Tell) -> WrittenVideo:
     """Write the overlay beside the other files of a run.
 
     The video has a constant rate and the duration of the tracked one: where that one's rate varies,
@@ -36,7 +36,7 @@ def write_overlay(found: Followed, path: Path, decoder: Decoder, tell: Tell) -> 
         tell: Receives the share of the frames drawn.
 
     Raises:
-        FilmError: When it cannot be written.
+        VideoError: When it cannot be written.
         DecoderDied: When the video crashed the decoder.
     """
     time_s = np.array([report.captured_s for report in found.reports])
@@ -49,7 +49,7 @@ def write_overlay(found: Followed, path: Path, decoder: Decoder, tell: Tell) -> 
             yield from [picture] * int(times[n])
             tell((n + 1) / len(found.reports))
 
-    return write_film(path, repeated(), 1 / period_s)
+    return write_video(path, repeated(), 1 / period_s)
 
 
 def shown_times(time_s: Vector, period_s: float) -> NDArray[np.int64]:

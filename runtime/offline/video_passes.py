@@ -32,15 +32,15 @@ from integrator.measuring.known_body import Opening, Unknown, Unmeasured
 from integrator.merge_state import Start, State
 from integrator.rig.tilted_camera import LEVEL, TILTS_DEG, camera_of_sights
 from integrator.single.sight import Annotations
-from runtime.offline.film_smoothing import calmed
 from runtime.offline.frame_pairs import share_of
+from runtime.offline.video_smoothing import calmed
 from runtime.unfinished.unfinished_run import BODIES
 from runtime.unfinished.work import Course
 from viewer import track
 from viewer.background.background import learn
 from viewer.capture import recorded
 from viewer.landmarks.outside_source import OutsideSource
-from viewer.room.background_source import FilmBackground
+from viewer.room.background_source import VideoBackground
 from viewer.stick.standing_height import standing_of, standing_rows
 
 CUTTING, POSING = "silhouettes", "poses"
@@ -50,7 +50,7 @@ MOST_COVERED: Final = 0.5
 """Smallest share of the picture without a person in most frames; a moving camera gives less."""
 
 
-class FilmFacts(NamedTuple):
+class VideoFacts(NamedTuple):
     """Inputs of both passes."""
 
     settings: Settings
@@ -113,8 +113,8 @@ class Posing(NamedTuple):
 
 def silhouettes_of(
     clip: Clip,
-    background: FilmBackground,
-    film: FilmFacts,
+    background: VideoBackground,
+    film: VideoFacts,
     reader: Reader,
     source: OutsideSource | None = None,
     course: Course = Course(),
@@ -143,7 +143,7 @@ def silhouettes_of(
 
 def bodies_of(
     reports: Sequence[View],
-    film: FilmFacts,
+    film: VideoFacts,
     course: Course = Course(),
     first: FirstPass = FirstPass(),
 ) -> Lifted:
@@ -175,7 +175,7 @@ def bodies_of(
     return Lifted(bodies, rig.cameras[0])
 
 
-def _posed(at: Posing, report: View, film: FilmFacts) -> tuple[Posing, Body]:
+def _posed(at: Posing, report: View, film: VideoFacts) -> tuple[Posing, Body]:
     """One frame of the second pass."""
     annotations, guide = _annotations(film, report), at.guide
     if guide is not None and annotations.orientation is not None:
@@ -186,7 +186,7 @@ def _posed(at: Posing, report: View, film: FilmFacts) -> tuple[Posing, Body]:
     return at._replace(viewer=viewer, integrator=state, guide=guide), body
 
 
-def _begun(reports: Sequence[View], film: FilmFacts) -> tuple[track.State, State]:
+def _begun(reports: Sequence[View], film: VideoFacts) -> tuple[track.State, State]:
     """A viewer and an integrator that know the first pass's scale (T20)."""
     settings, camera = film.settings, film.camera
     size = (reports[0].width, reports[0].height)
@@ -223,11 +223,11 @@ def _sights(stands: Sequence[Stand], size: tuple[int, int]) -> NDArray[np.float6
     return np.array([one.rows for one in upright] or [(0.0, float(size[1]))])
 
 
-def _setup(film: FilmFacts) -> track.Setup:
+def _setup(film: VideoFacts) -> track.Setup:
     return track.Setup(film.number, film.camera, film.settings, film.method, alone=True)
 
 
-def _annotations(film: FilmFacts, report: View) -> Annotations:
+def _annotations(film: VideoFacts, report: View) -> Annotations:
     """The user's inputs for a frame, in the pixels of its report."""
     note = held(film.notes, report.frame)
     filed = film.scale * np.array([*note.joints_px.values()]).reshape(-1, 2)

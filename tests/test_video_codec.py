@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from animator.film_codec import CODECS, best_codec, pictures_in, works
+from animator.video_codec import CODECS, best_codec, pictures_in, works
 
 SIZE = (64, 48)
 
@@ -35,7 +35,7 @@ def test_an_encoder_that_hangs_or_dies_costs_the_trial_alone(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     def hangs(*_: object, **__: object) -> None:
-        raise subprocess.TimeoutExpired("animator.film_codec", 20.0)
+        raise subprocess.TimeoutExpired("animator.video_codec", 20.0)
 
     def dies(*_: object, **__: object) -> object:
         return subprocess.run([sys.executable, "-c", "1 / 0"], capture_output=True, check=False)
@@ -43,10 +43,10 @@ def test_an_encoder_that_hangs_or_dies_costs_the_trial_alone(
     for trial in (hangs, dies):
         best_codec.cache_clear()
         with monkeypatch.context() as patch:
-            patch.setattr("animator.film_codec.subprocess.run", trial)
+            patch.setattr("animator.video_codec.subprocess.run", trial)
             if trial is dies:
                 patch.undo()
-                patch.setattr("animator.film_codec.sys.executable", "/bin/false")
+                patch.setattr("animator.video_codec.sys.executable", "/bin/false")
             assert best_codec(SIZE) == CODECS[-1]
 
 

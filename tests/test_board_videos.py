@@ -10,8 +10,8 @@ from rich.progress import Progress
 from calibration.board.board import BOARDS, Board, chessboard
 from common.rig.rig_file import CalibrationError
 from common.video.pictures import Decoded, Size, VideoInfo, Wanted
-from runtime.offline import board_films
-from runtime.offline.board_films import Looked, looked_through
+from runtime.offline import board_videos
+from runtime.offline.board_videos import Looked, looked_through
 
 A4, A3 = BOARDS["a4"], BOARDS["a3"]
 Corners = dict[int, tuple[Board, tuple[float, float]]]
@@ -55,8 +55,8 @@ def look(
     boards: tuple[Board, ...] = (A4, A3),
     progress: Progress | None = None,
 ) -> list[Looked]:
-    monkeypatch.setattr(board_films, "Decoder", lambda: films)
-    monkeypatch.setattr(board_films, "corners_in", films.corners_in)
+    monkeypatch.setattr(board_videos, "Decoder", lambda: films)
+    monkeypatch.setattr(board_videos, "corners_in", films.corners_in)
     return looked_through([*films.infos], boards, progress or Progress(disable=True))
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from calibration.person.film_worth import LEAST, measured_worth
+from calibration.person.independent_moments import LEAST, measured_worth
 from calibration.person.rig_residuals import Explained
 from calibration.tracks.sight_lines import Meeting, Numbers
 

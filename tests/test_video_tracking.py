@@ -19,35 +19,35 @@ from common.notes.notes import Note, Notes
 from common.rig.camera import PAPER_ROTATIONS
 from common.video.clip_facts import Clip, ClipView, Meta
 from common.video.pictures import Ending
-from runtime.offline import film_tracking
-from runtime.offline.film_passes import (
+from runtime.offline import video_tracking
+from runtime.offline.video_passes import (
     CUTTING,
     POSING,
     REPORTS,
     Cutting,
-    FilmFacts,
     FirstPass,
     Lifted,
     Posing,
+    VideoFacts,
 )
-from runtime.offline.film_tracking import (
-    Film,
+from runtime.offline.video_tracking import (
     Followed,
     Heard,
+    VideoInput,
     doubtful,
     follow_clip,
     follow_masks,
     unseen,
 )
-from runtime.store.runs import NOBODY_SEEN
+from runtime.store.runs import NO_PERSON_SEEN
 from runtime.unfinished.work import Course
-from viewer.room.background_source import FilmBackground
+from viewer.room.background_source import VideoBackground
 
 VIEW = ClipView(2, "a.mp4", (640, 480), (160, 120), 30.0, 60)
 CLIP = Clip("film", (VIEW,), 3, None, Meta("anna", "squat"), ("it is short",))
 UNCERTAIN = np.array([[True, False, False], [False, False, False]])
 ROOM: Any = SimpleNamespace(uncertain=UNCERTAIN)
-BACKGROUND = FilmBackground(ROOM, [], "nothing moves")
+BACKGROUND = VideoBackground(ROOM, [], "nothing moves")
 NOTES = Notes(note=(Note(4, orientation="left"),))
 METHOD = METHODS["default"]
 REPORT = report(2)
@@ -96,15 +96,15 @@ class Passes:
         self.camera: Any = RIG.cameras[1]
         self.sources: Any = {2: SimpleNamespace(odd=["a landmark is odd"])}
         ticks = itertools.count(10.0)
-        monkeypatch.setattr("runtime.offline.film_tracking.time.perf_counter", lambda: next(ticks))
+        monkeypatch.setattr("runtime.offline.video_tracking.time.perf_counter", lambda: next(ticks))
         for name in ("silhouettes_of", "bodies_of", "outside_sources"):
-            monkeypatch.setattr(film_tracking, name, getattr(self, name))
+            monkeypatch.setattr(video_tracking, name, getattr(self, name))
 
     def silhouettes_of(self, *given: Any) -> list[View]:
         self.asked.append(given)
         return [REPORT] * 3
 
-    def bodies_of(self, reports: Any, film: FilmFacts, course: Course, *first: Any) -> Lifted:
+    def bodies_of(self, reports: Any, film: VideoFacts, course: Course, *first: Any) -> Lifted:
         self.asked.append((len(reports), film, course, *first))
         return Lifted(self.bodies, self.camera)
 
@@ -115,7 +115,7 @@ class Passes:
 
 
 READER: Any = SimpleNamespace(ending=Ending(40, 2))
-KNOWN = FilmFacts(Settings(), METHOD, 2, 0.1, None, NOTES, 0.25)
+KNOWN = VideoFacts(Settings(), METHOD, 2, 0.1, None, NOTES, 0.25)
 
 
 def test_a_film_is_gone_through_twice_and_the_summary_tells_of_both(
@@ -124,7 +124,7 @@ def test_a_film_is_gone_through_twice_and_the_summary_tells_of_both(
     """Every third of 30 frames a second; a picture of 640 is worked on at 160."""
     passes, work = Passes(monkeypatch), Work()
     heard = Heard(lambda _: 1, lambda _: 2, work)
-    done = follow_clip(Film(CLIP, BACKGROUND, NOTES), Settings(), METHOD, READER, heard)
+    done = follow_clip(VideoInput(CLIP, BACKGROUND, NOTES), Settings(), METHOD, READER, heard)
     first_pass, second_pass = passes.asked
     outside = passes.sources[2]
     course = Course(heard.silhouettes, work)
@@ -154,7 +154,7 @@ def test_a_film_is_gone_through_twice_and_the_summary_tells_of_both(
 def test_a_calibrated_film_keeps_its_camera(monkeypatch: pytest.MonkeyPatch) -> None:
     passes, rig = Passes(monkeypatch), msgspec.structs.replace(RIG, cameras=RIG.cameras[:1])
     clip = msgspec.structs.replace(CLIP, rig=rig)
-    done = follow_clip(Film(clip, BACKGROUND), Settings(), METHOD, READER)
+    done = follow_clip(VideoInput(clip, BACKGROUND), Settings(), METHOD, READER)
     assert passes.asked[1][1] == KNOWN._replace(camera=RIG.cameras[0], notes=Notes())
     assert done.facts["scale_source"] == "calibrated"
     assert "camera" not in done.facts
@@ -167,7 +167,7 @@ def test_a_film_that_was_left_goes_on_and_counts_the_time_before(
     passes, first = Passes(monkeypatch), FirstPass(("it was dark",), 5.0, Ending(60))
     left: Any = Posing(None, None, first, spent_s=20.0)  # type: ignore[arg-type]
     work = Work(**{POSING: left})
-    film = Film(CLIP, BACKGROUND, NOTES)
+    film = VideoInput(CLIP, BACKGROUND, NOTES)
     done = follow_clip(film, Settings(), METHOD, READER, Heard(work=work))
     ((reports, _, _, told),) = passes.asked
     assert (reports, told) == (7, first)
@@ -200,7 +200,7 @@ def test_masks_that_are_lower_than_a_person_show_nobody(monkeypatch: pytest.Monk
     done = follow_masks("masks", reports, settings)
     assert [bool(one.people) for one in done.reports] == [True, False, True, False]
     assert done.reports[0] is reports[0]
-    film = FilmFacts(settings, METHODS["thesis"], 1, 1 / 8, None)
+    film = VideoFacts(settings, METHODS["thesis"], 1, 1 / 8, None)
     assert passes.asked[0][:2] == (4, film)
     assert (done.period_s, done.clip, done.background) == (1 / 8, None, None)
     assert done.facts == {
@@ -223,8 +223,8 @@ def test_poses_that_mostly_do_not_fit_are_doubtful() -> None:
     assert doubtful([fits, misses]) == ""
     assert doubtful([fits, misses, away]) == ""
     assert doubtful([fits, misses, misses, away]).startswith("only 33% of the poses fit their silh")
-    assert doubtful([away]) == unseen([away]) == NOBODY_SEEN
-    assert doubtful([]) == NOBODY_SEEN
+    assert doubtful([away]) == unseen([away]) == NO_PERSON_SEEN
+    assert doubtful([]) == NO_PERSON_SEEN
     assert unseen([away, misses]) == ""
 
 

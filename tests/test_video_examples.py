@@ -7,9 +7,9 @@ import pytest
 from truth_teacher import keypoints_of
 
 from common.body.observation import Landmarks
-from lab.film_lessons.film_examples import ELSEWHERE, HELD_SHARE, example_of, looked_through
 from lab.landmark_lessons.picture_store import PictureStore
 from lab.training.training import TrainingError
+from lab.video_lessons.video_examples import ELSEWHERE, HELD_SHARE, example_of, looked_through
 from synth.picture.picture_examples import SIDE_PX, PictureExample
 
 
