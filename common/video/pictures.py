@@ -115,7 +115,7 @@ class Decoded(msgspec.Struct, frozen=True):
 
 
 class Reader(Protocol):
-    """A source of pictures: a decoder, or a frame_cache before it."""
+    """A source of pictures: a decoder, or a cache before it."""
 
     @property
     def ending(self) -> Ending:
