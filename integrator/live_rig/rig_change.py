@@ -14,7 +14,7 @@ from integrator.person import Waiting
 
 
 def with_rig(state: State, rig: Rig) -> State:
-    """The state as if the person came in now, with the new rig.
+    """The state with a new rig; the person is handled as if they had just appeared.
 
     The person's place and pose are searched anew: the world has changed. Their body is kept: the
     measurement of the opening posture, recomputed by the new rig, or else the stature that the rig
@@ -85,7 +85,7 @@ def word_of_moved(rig: Rig, stands: MovedCameras) -> str:
 
 
 def cameras_named(numbers: tuple[ViewerNumber, ...]) -> str:
-    """The cameras with a verb."""
+    """A phrase for the moved cameras: "camera 2 was", "both cameras were"."""
     if len(numbers) == 1:
         return f"camera {numbers[0]} was"
     named = " and ".join(str(number) for number in numbers)

@@ -20,8 +20,8 @@ AHEAD_M: Final = 4.0
 camera: the usual distance of the paper's cameras."""
 UP_AXIS: Final = np.array([0.0, 1.0, 0.0])
 MOST_ASIDE: Final = 0.5
-"""Cosine of the angle between both views of a body at which the second still sees its flank:
-from 60 degrees trunks of `thesis_bdp` seem 1.2 times as deep as they are, from 45 1.4 times."""
+"""Smallest cosine between both views' directions at which the second still measures the flank.
+At 60 degrees trunks of `thesis_bdp` appear 1.2 times too deep, at 45 degrees 1.4 times."""
 PARALLEL: Final = 1e-9
 """Squared sine of the angle between two rays below which they count as parallel."""
 
@@ -71,8 +71,9 @@ def upright_place_of(rig: Rig, root_px: Pixel, above_px: Pixel) -> Vector:
     """The navel of an upright person, (3,), metres, where view 2 shows only the vertical line that
     it is on.
 
-    In a rig of the paper's kind from the two columns, as `place_of`; in any other the intersection
-    of view 1's ray with the vertical plane of view 2's. NaN where the ray lies in that plane.
+    In a rig of the paper's kind it comes from the two columns, as in `place_of`. In any other it is
+    the intersection of view 1's ray with the vertical plane of view 2's; NaN where the ray lies in
+    that plane.
 
     Args:
         rig: Two cameras.
@@ -157,8 +158,8 @@ def _at_depth(camera: Camera, pixel: Pixel, before_m: Vector) -> Vector:
 
 
 def facing_of(rig: Rig, pose: Vector) -> tuple[Facing, ...]:
-    """The facing in each view of a known pose: facade where the direction to the camera is
-    nearer to the body's front or back than midway between both views'."""
+    """The facing in each view of a known pose: how frontal the trunk is to each camera is
+    compared with the mean of the most and the least frontal view; above it a view is the facade."""
     yaw = math.radians(pose[POSE_INDEX["torso_y"]])
     shares = []
     for camera in rig.cameras:

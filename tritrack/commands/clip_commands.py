@@ -53,12 +53,12 @@ def track(
     force: Force = False,
     json_wanted: JsonWanted = False,
 ) -> None:
-    """Track recorded clips, as live but as fast as it goes.
+    """Track recorded clips, as in a live run but as fast as possible.
 
     The same clip gives the same poses, byte for byte.
 
-    What is stopped, by Ctrl-C or by a crash, goes on where it was with the same command and
-    --resume, and gives the same poses as without a stop.
+    A run that is stopped, by Ctrl-C or a crash, resumes with the same command and --resume, and
+    gives the same poses as without a stop.
 
     Ends with exit code 3 where a clip's body is believed in less than half of its frames with a
     person, no person is found, or a video could not be read to its end.
@@ -107,7 +107,7 @@ def synth(
     ] = 2,
     json_wanted: JsonWanted = False,
 ) -> None:
-    """Make clips of synthetic people whose truth is known.
+    """Make clips of synthetic people with ground truth.
 
     Example: tritrack synth --out clips --performers 3 --seed 7
     """
@@ -146,7 +146,7 @@ def single(
 
     The camera stands still; no calibration and no empty room is needed.
 
-    What is stopped goes on where it was with the same command and --resume.
+    A run that is stopped resumes with the same command and --resume.
 
     Ends with exit code 3 where a video's body is believed in less than half of its frames with a
     person, no person is found, or a video could not be read to its end.
@@ -222,7 +222,7 @@ def replay(
     force: Force = False,
     json_wanted: JsonWanted = False,
 ) -> None:
-    """Integrate, play or say a recorded run again.
+    """Replay a recorded run: integrate it again, play it, or publish it.
 
     Example: tritrack replay runs/walk
     """
@@ -256,7 +256,7 @@ def retouch(
 ) -> None:
     """Correct a run frame by frame, on a page. Ctrl-C ends it.
 
-    Say there what the video does not show; "Fit again" fits the video with that.
+    Enter there what the video does not show; "Fit again" fits the video with these inputs.
 
     Example: tritrack retouch runs/dance
     """

@@ -61,11 +61,11 @@ def train(
 ) -> None:
     """Learn postures from clips or runs.
 
-    With --what, a network is learnt from synthetic people instead: poses of silhouettes
-    (proposals) or of landmarks (lifting), silhouettes, landmarks; landmarks of videos of your own,
-    too: --film VIDEO, as often as there are videos.
+    With --what, a network is trained on synthetic people instead. It is one of four: proposals
+    (poses from silhouettes), lifting (poses from landmarks), silhouettes, landmarks. The last one
+    can be trained on your own videos too: give --film VIDEO for each.
 
-    One posture more, beside those that a model knows: tritrack teach.
+    To add one posture to a model, use tritrack teach.
 
     Example: tritrack train clips/*/ --out postures.npz
     """
@@ -163,11 +163,11 @@ def teach(
     cache: Cache = CACHE,
     json_wanted: JsonWanted = False,
 ) -> None:
-    """Teach a model one posture more, by three takes or more.
+    """Teach a model one more posture, with three takes or more.
 
-    They are recorded, or done before cameras (--live). Says whether the takes agree, and which
-    other posture it is nearest to. With --again the posture is one that the model knows: name new
-    takes to replace it, old and new ones to add.
+    The takes are recordings, or are performed before cameras (--live). Says whether the takes
+    agree, and which other posture is most similar. With --again the posture is one of the model's:
+    give new takes alone to replace it, or old and new ones to extend it.
 
     Example: tritrack teach star_jump take1/ take2/ take3/ --out mine.npz
     """
@@ -212,10 +212,10 @@ def evaluate_postures(
     ] = "",
     json_wanted: JsonWanted = False,
 ) -> None:
-    """Name postures of people whom no model saw (table 2).
+    """Recognise postures of people outside the training data (table 2).
 
-    Clips are tracked by all cores, about 450 MB each; what was tracked is kept, so that a run
-    that was stopped goes on where it was.
+    All cores track clips, with about 450 MB each. Tracking results are kept, so that a stopped
+    evaluation resumes.
 
     Example: tritrack evaluate postures clips/*/ --split 's1*:s2*' --out report
     """
@@ -249,7 +249,7 @@ def evaluate_spotting(
 ) -> None:
     """Find performances in uncut streams.
 
-    Says how many are found, how soon, and how many of what is found are none.
+    Reports how many are found, after how long, and how many events are false.
 
     Example: tritrack evaluate spotting runs/*_stream --out report
     """
@@ -273,7 +273,7 @@ def evaluate_tracking(
     size: Size = None,
     json_wanted: JsonWanted = False,
 ) -> None:
-    """Track clips and hold them against their truth.
+    """Track clips and compare the results with their ground truth.
 
     Joints, silhouettes, lengths and confidence are measured.
 

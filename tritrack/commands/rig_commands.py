@@ -157,9 +157,9 @@ def markers(
     port: Port = None,
     json_wanted: JsonWanted = False,
 ) -> None:
-    """Say how cameras are turned from marked lines.
+    """Measure how cameras are aimed, from marked lines.
 
-    That is how far each is turned, tilted and rolled.
+    It prints yaw, pitch and roll of each.
 
     Example: tritrack calibrate markers configs/markers.toml
 
@@ -245,7 +245,7 @@ def import_(
 ) -> None:
     """Take the calibration of another program.
 
-    Clips in the folder of the file that is written use it, and clips in folders there.
+    Clips in the folder of the written file use it, and so do clips in its subfolders.
 
     Example: tritrack calibrate import Calib.toml --camera cam01 --camera cam04
     --out clips/calibration.json

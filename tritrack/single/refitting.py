@@ -53,7 +53,7 @@ def refit(
 
     Args:
         folder: Folder of a run that `tritrack single` wrote.
-        settings: Its own; camera 1 is its video.
+        settings: The run's settings; camera 1 is its video.
         notes: All inputs for the video.
         tell: Receives the progress.
         stop: Set to stop.

@@ -18,7 +18,8 @@ def divided(
     divisions: int,
     least: float,
 ) -> Found:
-    """The best value in a range, probed at equal steps, then in two steps around the winner.
+    """The best value in a range: first probed at equal steps; each later pass probes the interval
+    of one step on either side of the winner.
 
     The best score is kept from pass to pass and starts at 0, so a range without any match gives its
     middle (T12).
