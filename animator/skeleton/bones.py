@@ -115,8 +115,8 @@ def skeleton_of(joints_m: Joints) -> Skeleton:
 
 
 def joints_of(skeleton: Skeleton, motion: Motion) -> Joints:
-    """The 15 landmarks of a moving skeleton; with hands and feet the 22, of which nose and
-    heels, which no bone ends at, are NaN."""
+    """The 15 landmarks of a moving skeleton, or with hands and feet the 22. Nose and heels are
+    NaN, because no bone ends there."""
     names = JOINT_NAMES if len(skeleton.bones) < len(BONES) else ALL_JOINT_NAMES
     found = np.full((len(motion.root_m), len(names), 3), np.nan)
     world: list[Rotation] = []

@@ -29,7 +29,8 @@ from common.rig.rig_file import CalibrationError
 FEWEST: Final = 12
 """Fewest moments in which both views must see the person."""
 FEW, FEW_EACH = 24, 6
-"""Number of moments used to choose the right start, and of each clip where there are several."""
+"""Number of moments used to choose the right start; the second number is per clip, with several
+clips."""
 STARTS: Final = 3
 """Number of the likeliest starts that are followed with camera 2 on each side of camera 1: all
 the likely ones of a walk may be mirror images (synthetic rigs, seeds from 1000 on)."""

@@ -50,8 +50,8 @@ class ProcessContext(NamedTuple):
     """Folder of this run in which a process leaves its state for its successor; None: it has
     none."""
     stop: threading.Event | None = None
-    """Event that ends the part where it is a thread of its supervisor's process; None: it has
-    its own process."""
+    """Event that ends the part, where the part is a thread of its supervisor's process; None: it
+    has its own process."""
 
 
 @contextmanager

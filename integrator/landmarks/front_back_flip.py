@@ -13,9 +13,10 @@ from integrator.proposal import pose_network
 WIDE_DEG: Final = 30.0
 """Standard deviation of the facing that a view reports, degrees."""
 SHARPER: Final = 3.0
-"""Factor on the logit of a view's confidence that it did not take front for back (a profile stays
-the same profile then). Of poses whose views are .5 to .6, .6 to .7, .7 to .8 and .8 to 1 sure, 37,
-15, 8 and .1 % are reversed: two performers and synthetic people (docs/measurements.md)."""
+"""Platt scaling of a view's confidence in its facing: the factor on the logit of the probability
+that front and back are right. In a profile, front and back look alike. Of poses whose views are
+.5 to .6, .6 to .7, .7 to .8 and .8 to 1 sure, 37, 15, 8 and .1 % are reversed: two performers
+and synthetic people (docs/measurements.md)."""
 UNTOLD: Final = 0.15
 """Probability that a view without a facing took front for back."""
 UNIFORM_FLOOR: Final = 0.005
@@ -27,7 +28,8 @@ ANEW: Final = 0.1
 TRUST: Final = 0.6
 """Exponent of an instant's likelihood: consecutive instants are correlated."""
 FLIP_THRESHOLD: Final = 0.7
-"""Probability above which a proposal is flipped; below one minus this it is no longer flipped."""
+"""Probability above which a proposal gets flipped. It stays flipped until the probability falls
+below one minus this."""
 
 
 def step(
@@ -78,8 +80,8 @@ def confused(confidence: float) -> float:
 
 
 def _told(said_deg: float, facing_deg: float, wrong: float) -> float:
-    """Likelihood of a view's facing for a person who faces a given way, by how often it is
-    confused."""
+    """Likelihood of a view's facing, given the person's true facing and the view's probability
+    of confusing front and back."""
     plain = (1.0 - wrong) * _near(said_deg - facing_deg)
     return plain + wrong * _near(said_deg - (180.0 - facing_deg)) + UNIFORM_FLOOR
 

@@ -39,8 +39,8 @@ SHOWN_RIGHT: Final = (0.02, 0.91)
 """Confidences in a landmark that mean probability 0 and 1 of being right."""
 FIRM_M: Final = 0.02
 PLATT: Final = (2.15, 4.25)
-"""Platt scaling of a fused joint's confidence: its logit at a standard deviation of FIRM_M, and
-its fall for each e-fold growth. Fitted to joints less than 50 mm off (docs/measurements.md)."""
+"""Platt scaling of a joint's confidence: its logit at a standard deviation of FIRM_M, and the fall
+where the deviation grows e-fold. Fitted to joints less than 50 mm off (docs/measurements.md)."""
 Probability = TypeVar("Probability", float, Vector)
 _DIAGONAL: Final = [0, 3, 5]
 
@@ -180,7 +180,7 @@ def _each_way(values: Vector, was: NDArray[np.int_]) -> NDArray[np.float64]:
 def _weighed(
     proposal: Proposal, rays: Rays, stature_m: float, ways: NDArray[np.int_]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """`_modes` with each evidence's probability and spread from its confidence."""
+    """`_modes` for evidence whose probability and spread follow from its confidence."""
     shown = _shown(rays)
     others = np.where(rays.others_confidence < SECOND, 0.0, rays.others_confidence)
     confidence, wider_m = proposal.confidence, proposal.wider_m

@@ -112,7 +112,7 @@ def _turns(
 ) -> dict[str, Turns]:
     """From rest to the world, (n, 3, 3), for all bones that do not just follow their parent.
 
-    `half` are our own bones' turns with the twist of the limbs' upper halves.
+    `half`: turns of our own bones in which each limb has the twist of its upper half.
     """
     pelvis, chest, head = (frames[:, BONE_INDEX[name]] for name in ("pelvis", "chest", "head"))
     found = {"root": pelvis}
