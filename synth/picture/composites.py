@@ -30,7 +30,7 @@ UNTOLD_SHARE, RAGGED_SHARE = 0.3, 0.15
 """Shares of silhouettes that are unknown, ragged, with holes, or with other foreground."""
 TURN_DEG, LARGER, BESIDE_PX = 6.0, 0.12, 0.021 * SIDE_PX
 FINE_TINT, EXPOSURE = 0.07, 0.25
-"""Ranges and deviations of random changes: rotation, logarithm of the size, displacement, logarithms
+"""Sizes of random changes: rotation, logarithm of the size, displacement, logarithms
 of a colour's gain and of the exposure."""
 
 
