@@ -39,8 +39,9 @@ from common.bus.control_messages import (
     Ended,
     Pulse,
 )
+from common.bus.false_messages import MalformedMessage
 from common.bus.instant import Instant
-from common.bus.message_codec import TOPICS, MalformedMessage, decode, encode
+from common.bus.message_codec import TOPICS, decode, encode
 from common.bus.messages import Body, Guide, Message, Picture, View
 from common.config.config_file import load
 from common.method import METHODS

@@ -3,10 +3,12 @@ clock."""
 
 import threading
 import time
-from typing import Final
+from collections.abc import Sequence
+from typing import Final, NamedTuple
 
 from common.bus.bus import Bus, open_hub
 from common.bus.control_messages import Cameras, Command
+from common.bus.instant import Instant
 from common.bus.messages import Guide, ViewerNumber
 from common.bus.process import PAGE_S, Heart, ProcessContext, process, settle
 from common.bus.rate import Pace
@@ -31,63 +33,75 @@ SUPERVISED_S: Final = 60.0
 """The same where a supervisor ends the processes in order."""
 
 
+class Merging(NamedTuple):
+    """A run of the integrator at a moment."""
+
+    state: State
+    said: Annotations = Annotations()
+    """The user's annotations of the next instant."""
+    noticed: diagnostics.State = diagnostics.State()
+
+
 def run(
     state: State,
     viewers: tuple[ViewerNumber, ...],
-    period_s: float,
     bus: Bus,
     stop: threading.Event,
     wait_s: float = 0.0,
     estate: Estate = Estate(None),
 ) -> None:
     """Merge the viewers' reports until each has ended; wait for the page for a given time."""
-    pace = Pace(period_s)
+    at, pace, told = Merging(state), Pace(state.period_s), RigPublisher(bus)
     heart = Heart(bus, "integrator", pace)
     begun, cameras = (estate.over, estate.start_s), len(state.frames)
-    subscriber = Subscriber(bus, viewers, period_s, wait_s, *begun, cameras)
-    noticed, said, told = diagnostics.State(), Annotations(), RigPublisher(bus)
+    subscriber = Subscriber(bus, viewers, state.period_s, wait_s, *begun, cameras)
     heart.beat("ready", "\n".join(diagnostics.assumed(state)))
     looks = state.scale_source == "assumed" and state.proposes and len(viewers) == 2
     with LiveCalibration(state, looks=looks, late_s=estate.late_s) as calibration:
         while subscriber.going and not stop.is_set():
-            state, said = _obeyed(state, said, subscriber.commands(), bus)
+            at = _obeyed(at, subscriber.commands(), bus)
             subscriber.late_s = calibration.late_s
             for instant in subscriber.instants():
-                state, body, guide = merge.step(state, instant, said)
-                said = Annotations()
-                noticed = diagnostics.step(noticed, instant)
-                bus.publish(guide)
-                bus.publish(body)
-                pace.done(body.clock_s, time.monotonic())
+                at = _merged(at, instant, bus, pace)
                 calibration.heard(instant)
-            state = calibration.changed(state)
-            told.rig(state, calibration.late_s)
+            at = at._replace(state=calibration.changed(at.state))
+            told.rig(at.state, calibration.late_s)
             news = (*calibration.news, *subscriber.news)
             if told.is_new(news):
                 heart.hurry()
-            estate.leave(
-                state,
-                calibration.late_s,
-                time.monotonic(),
-                subscriber.over,
-                subscriber.starter.start_s,
-            )
-            odd = [*diagnostics.assumed(state), *told.doubts(state), *news]
+            _leave(estate, at.state, calibration, subscriber)
+            odd = [*diagnostics.assumed(at.state), *told.doubts(at.state), *news]
             heart.beat("running", "\n".join(odd), **subscriber.counts())
-    news = (*told.doubts(state), *calibration.news, *subscriber.news)
-    odd = [*diagnostics.warnings(noticed, state), *news]
+    news = (*told.doubts(at.state), *calibration.news, *subscriber.news)
+    odd = [*diagnostics.warnings(at.noticed, at.state), *news]
     heart.beat("ended", "\n".join(odd), **subscriber.counts())
 
 
-def _obeyed(
-    state: State, said: Annotations, asked: list[Command], bus: Bus
-) -> tuple[State, Annotations]:
+def _obeyed(at: Merging, asked: Sequence[Command], bus: Bus) -> Merging:
     """Commands from the page, carried out and answered."""
     for command in asked:
-        state, said, answer = commands.step(state, said, command)
+        state, said, answer = commands.step(at.state, at.said, command)
+        at = at._replace(state=state, said=said)
         if answer is not None:
             bus.publish(answer)
-    return state, said
+    return at
+
+
+def _merged(at: Merging, instant: Instant, bus: Bus, pace: Pace) -> Merging:
+    """Merge one instant, and publish its guide and body."""
+    state, body, guide = merge.step(at.state, instant, at.said)
+    bus.publish(guide)
+    bus.publish(body)
+    pace.done(body.clock_s, time.monotonic())
+    return Merging(state, noticed=diagnostics.step(at.noticed, instant))
+
+
+def _leave(
+    estate: Estate, state: State, calibration: LiveCalibration, subscriber: Subscriber
+) -> None:
+    """Leave what a successor needs, should this process die."""
+    start_s = subscriber.starter.start_s
+    estate.leave(state, calibration.late_s, time.monotonic(), subscriber.over, start_s)
 
 
 def main(settings: Settings, clip: Clip, context: ProcessContext = ProcessContext()) -> None:
@@ -124,7 +138,7 @@ def main(settings: Settings, clip: Clip, context: ProcessContext = ProcessContex
         warm_up(settings, clip.views[0].size)
         settle()
         bus.announce("integrator")  # viewers repeat lost reports then: it subscribes at once
-        run(state, viewers, period_s, bus, stop, page_wait_s(settings, clip, context), estate)
+        run(state, viewers, bus, stop, page_wait_s(settings, clip, context), estate)
         stop.wait(SUPERVISED_S if context.supervised else LAST_WORDS_S)
 
 

@@ -23,10 +23,10 @@ from common.bus.control_messages import (
     Ended,
     Pulse,
 )
+from common.bus.false_messages import MalformedMessage
 from common.bus.message_codec import (
     MAX_BYTES,
     TOPICS,
-    MalformedMessage,
     decode,
     encode,
     key_of,

@@ -15,7 +15,8 @@ import pytest
 
 from common.body.body import JOINT_NAMES
 from common.body.observation import Search
-from common.bus.message_codec import MalformedMessage, encode
+from common.bus.false_messages import MalformedMessage
+from common.bus.message_codec import encode
 from common.bus.messages import PROTOCOL, Body, View
 from common.config.config_file import load
 from common.config.renamed_settings import RenamedSetting, settings_of

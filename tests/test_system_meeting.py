@@ -179,7 +179,7 @@ def test_what_was_lost_is_told_to_the_end() -> None:
     bus = Talkative()
     pulses, bodies = bus.subscribe(Pulse), bus.subscribe(Body)
     state = merge_state.init(RIG, 1 / 15, Settings(), DEFAULT)
-    integrator.run(state, (1,), 1 / 15, bus, threading.Event())
+    integrator.run(state, (1,), bus, threading.Event())
     last = pulses.drain()[-1]
     assert (last.state, last.frames, last.dropped) == ("ended", BOUND, 6)
     assert bodies.drain()[-1].frame == BOUND + 5

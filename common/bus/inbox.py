@@ -5,8 +5,9 @@ from collections.abc import Callable
 from typing import Final, Generic, NamedTuple
 
 from common.bus.control_messages import ClockQuestion
+from common.bus.false_messages import MalformedMessage
 from common.bus.mailbox import Mailbox
-from common.bus.message_codec import TOPICS, MalformedMessage, Said, decode, key_of, pattern_of
+from common.bus.message_codec import TOPICS, Said, decode, key_of, pattern_of
 from common.bus.messages import Message
 from common.config.part_settings import MOST_SESSION
 

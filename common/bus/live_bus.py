@@ -8,17 +8,10 @@ from typing import Any, Final
 
 import zenoh
 
+from common.bus.false_messages import MalformedMessage
 from common.bus.inbox import BOUND, QUESTIONS, Alive, Inbox, answered, checked
 from common.bus.mailbox import Mailbox
-from common.bus.message_codec import (
-    TOPICS,
-    MalformedMessage,
-    Said,
-    encode,
-    key_of,
-    pattern_of,
-    refuse_size,
-)
+from common.bus.message_codec import TOPICS, Said, encode, key_of, pattern_of, refuse_size
 from common.bus.messages import Message, Picture
 from common.config.part_settings import MOST_SESSION
 

@@ -4,7 +4,8 @@ from typing import Any, Final, TypeVar
 
 import msgspec
 
-from common.bus.message_codec import MalformedMessage, decode
+from common.bus.false_messages import MalformedMessage
+from common.bus.message_codec import decode
 from common.bus.messages import PROTOCOL, Body, Message, View
 from common.config.renamed_settings import in_new_words
 

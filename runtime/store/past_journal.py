@@ -10,7 +10,8 @@ from typing import Final, Generic, NamedTuple, TypeVar
 import msgspec
 
 from common.bus.control_messages import Cameras
-from common.bus.message_codec import MAX_BYTES, MalformedMessage
+from common.bus.false_messages import MalformedMessage
+from common.bus.message_codec import MAX_BYTES
 from common.bus.messages import Body, Message, Posture
 from common.config.part_settings import SettingsError
 from runtime.store.journal import FRAME, HEAD, KINDS, MAGIC, Head, has_journal, parts_of

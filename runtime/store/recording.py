@@ -16,7 +16,8 @@ import msgspec
 from common.atomic_file import replacing
 from common.body.body import Bdp
 from common.bus.control_messages import Cameras
-from common.bus.message_codec import MalformedMessage, encode
+from common.bus.false_messages import MalformedMessage
+from common.bus.message_codec import encode
 from common.bus.messages import (
     MOST_VIEWS,
     PROTOCOL,
