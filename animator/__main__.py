@@ -22,6 +22,7 @@ from common.config.settings import Settings
 from common.npz_file import Facts
 from common.platform.platforms import platform
 from common.rig.camera import paper_rig
+from common.video.clip_sources import camera_words
 
 HEAR_S: Final = 0.05
 PERIOD_S: Final = 1 / TOPICS[Body].hz
@@ -187,7 +188,8 @@ def main(
     with process("animator", context) as stop:
         platform().give_way(BEHIND)
         own = entrance or entrance_of(settings.page)
-        page = LivePage(title, settings.page.port, context.supervised, own)
+        words = camera_words(settings)
+        page = LivePage(title, settings.page.port, context.supervised, own, words)
         told = page.address if entrance else invitation_of(own, settings.page.port)
         log.info("the page is at %s", told)
         try:

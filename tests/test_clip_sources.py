@@ -10,6 +10,7 @@ from common.video.clip_sources import (
     NOTHING,
     ClipError,
     ViewSource,
+    camera_words,
     companions_folder,
     first_camera,
     numbers_of,
@@ -128,6 +129,13 @@ def test_a_named_camera_without_a_video_is_refused(folder: Path) -> None:
     plate = {"left": CameraSettings(background="empty.png")}
     with pytest.raises(ClipError, match=r"^cameras\.left has neither source nor device"):
         sources_of(Settings(clip=str(folder), cameras=plate))
+
+
+def test_cameras_are_called_by_their_names_for_the_user_and_else_by_their_numbers() -> None:
+    camera = CameraSettings(device=0)
+    words = camera_words(Settings(cameras={"cam2": camera, "left": camera}))
+    assert words[:3] == ("left", "camera 2", "camera 3")
+    assert camera_words(Settings(clip="walk"))[:2] == ("camera 1", "camera 2")
 
 
 def test_the_first_camera_is_that_of_number_1() -> None:

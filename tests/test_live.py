@@ -68,6 +68,13 @@ def test_a_page_greets_with_its_title_and_the_millisecond_in_which_it_began(
     assert before_ms - 1 <= hello["run"] <= after_ms
 
 
+def test_a_page_is_told_what_the_cameras_are_called() -> None:
+    page = LivePage("a run", free_port(), commands=False, cameras=("door", "camera 2"))
+    (hello,) = told(page, 1)
+    page.close()
+    assert hello["cameras"] == ["door", "camera 2"]
+
+
 def test_who_comes_late_is_told_the_run_so_far_and_its_end_last(page: LivePage) -> None:
     page.show(snapshot_at(0))  # no cameras yet: nothing could be drawn
     page.set_rig(RIG)

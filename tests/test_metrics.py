@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 
+import msgspec
 import pytest
 
 pytest.importorskip("prometheus_client", reason="pip install 'tritrack[metrics]'")
@@ -15,6 +16,7 @@ from show_page import RIG
 from common.bus.control_messages import Cameras, Pulse
 from common.bus.inbox import Alive
 from common.bus.messages import Agreement, Body, Posture
+from common.rig.camera import Rig
 from runtime.outside.metrics import families
 from runtime.outside.run_figures import RunFigures, Told, step
 
@@ -98,10 +100,26 @@ def test_the_rig_is_told_in_metres_degrees_and_seconds() -> None:
     assert found.value("tritrack_view_offset_seconds") == 0.066
 
 
+def test_each_viewers_camera_is_named() -> None:
+    found = told([Cameras(rig=named_rig("door", "window"), scale_source="person")])
+    assert [labels for name, labels, _ in found.samples if name == "tritrack_camera_info"] == [
+        {"room": "hall", "part": "viewer 1", "camera": "door"},
+        {"room": "hall", "part": "viewer 2", "camera": "window"},
+    ]
+
+
+def named_rig(*names: str) -> Rig:
+    cameras = tuple(
+        msgspec.structs.replace(one, name=name)
+        for one, name in zip(RIG.cameras, names, strict=True)
+    )
+    return msgspec.structs.replace(RIG, cameras=cameras)
+
+
 def test_every_sample_names_its_room_and_ends_in_its_unit() -> None:
     found = told(SAID)
     assert {labels["room"] for _, labels, _ in found.samples} == {"hall"}
-    ends = ("_total", "_seconds", "_bytes", "_meters", "_degrees", "_ratio", "_up")
+    ends = ("_total", "_seconds", "_bytes", "_meters", "_degrees", "_ratio", "_up", "_info")
     assert [name for name in found.families if not f"{name}".endswith(ends)] == [
         "tritrack_frames",
         "tritrack_missed_deadlines",

@@ -29,6 +29,16 @@ def test_every_process_has_a_line_from_the_start() -> None:
     assert ["viewer 1" in line and "running" in line for line in lines].count(True) == 1
 
 
+def test_a_viewer_stands_with_the_name_of_its_camera_where_that_has_one() -> None:
+    names = ["integrator", "viewer 1", "viewer 2"]
+    lines = printed(table_of(names, {}, "run", ("[red] door", "camera 2")), width=120)
+    assert [line.split("starting")[0].strip() for line in lines if "starting" in line] == [
+        "integrator",
+        "viewer 1 ([red] door)",
+        "viewer 2",
+    ]
+
+
 def test_numbers_stand_under_their_names() -> None:
     pulse = running(
         "viewer 1",

@@ -12,6 +12,7 @@ from common.bus.messages import View
 from common.bus.process import ProcessContext, process
 from common.npz_file import Facts
 from common.rig.camera import Rig
+from common.video.clip_sources import camera_words
 from runtime.store.past_run import open_run
 from runtime.store.recording import Recording, read_recording
 from tritrack.replaying import instants
@@ -34,7 +35,10 @@ def replay_on_page(folder: Path, port: int, console: Console) -> Facts:
     """
     recording, summary = read_recording(folder), open_run(folder).summary
     with process("replay", ProcessContext()) as stop:
-        page = LivePage(recording.head.name, port, commands=False, most_bytes=MOST_BYTES)
+        words = camera_words(recording.head.settings)
+        page = LivePage(
+            recording.head.name, port, commands=False, cameras=words, most_bytes=MOST_BYTES
+        )
         try:
             console.print(f"the page is at {page.address}; Ctrl-C ends it", highlight=False)
             shown = show(page, recording)

@@ -10,7 +10,7 @@ from typing import Final
 import msgspec
 
 from animator.page.door import Entrance
-from animator.page.page_messages import Asked, Greeting, Over, ShownHealth, Told
+from animator.page.page_messages import CAMERAS, Asked, Greeting, Over, ShownHealth, Told
 from animator.page.page_server import PageServer
 from animator.page.shown import shown_frame, shown_room
 from animator.scene import Snapshot
@@ -31,6 +31,7 @@ class LivePage:
         port: A free port of this machine.
         commands: Whether any process carries out the user's commands.
         entrance: Where the page listens, and who may enter.
+        cameras: What the page calls each camera, by its number.
         most_bytes: Upper bound of the frames that are kept for late browsers.
 
     Raises:
@@ -43,9 +44,10 @@ class LivePage:
         port: int,
         commands: bool,
         entrance: Entrance = Entrance(),
+        cameras: tuple[str, ...] = CAMERAS,
         most_bytes: int = MOST_BYTES,
     ) -> None:
-        self._hello = Greeting(title, time.time_ns() // 1_000_000, commands)
+        self._hello = Greeting(title, time.time_ns() // 1_000_000, commands, cameras)
         self._lock = threading.Lock()
         self._frames: deque[bytes] = deque()
         self._bytes = self._shown = 0

@@ -9,7 +9,7 @@ from common.body.body import ANGLE_NAMES, JOINT_NAMES, LIMBS
 from common.body.extremities import ALL_JOINT_NAMES, EXTREMITY_LINES
 from common.body.kinematics import HEAD
 from common.bus.control_messages import Pulse
-from common.bus.messages import Performance, Status
+from common.bus.messages import MOST_VIEWS, Performance, Status
 from common.npz_file import Facts
 
 CYLINDERS: Final = [i for i in range(len(LIMBS)) if i != HEAD]
@@ -89,6 +89,10 @@ class ShownRoom(msgspec.Struct, frozen=True, tag="room", tag_field="kind"):
     """For each its centre and the four corners of its picture, at a depth of one metre."""
 
 
+CAMERAS: Final = tuple(f"camera {n}" for n in range(1, MOST_VIEWS + 1))
+"""What the page calls cameras without names of their own."""
+
+
 class Greeting(msgspec.Struct, frozen=True, tag="hello", tag_field="kind"):
     """The first message to a browser: what it needs to draw."""
 
@@ -97,6 +101,8 @@ class Greeting(msgspec.Struct, frozen=True, tag="hello", tag_field="kind"):
     """Id of the run and process: with another one a page starts afresh."""
     commands: bool
     """Whether any process carries out the user's commands."""
+    cameras: tuple[str, ...] = CAMERAS
+    """What the page calls each camera, by its number."""
     angles: tuple[str, ...] = ANGLE_NAMES
     joints: tuple[str, ...] = ALL_JOINT_NAMES
     large: int = len(JOINT_NAMES)

@@ -67,6 +67,16 @@ def numbers_of(names: Sequence[str]) -> dict[str, ViewerNumber]:
     return {name: own[name] if name in own else next(free) for name in names}
 
 
+def camera_words(settings: Settings) -> tuple[str, ...]:
+    """What texts for the user call each camera, by its number: the settings' name, else "camera 1".
+
+    A camera that is named by its number, as cam1, is called by it.
+    """
+    names = {number: name for name, number in numbers_of([*settings.cameras]).items()}
+    own = ((n, names.get(n, at)) for n, at in enumerate(CLIP_CAMERAS, 1))
+    return tuple(f"camera {n}" if name == f"cam{n}" else name for n, name in own)
+
+
 def first_camera(settings: Settings) -> str:
     """Name of camera 1, which the settings need not mention."""
     numbers = numbers_of([*settings.cameras])

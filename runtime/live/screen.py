@@ -10,6 +10,7 @@ from rich.markup import escape
 from common.bus.control_messages import Pulse
 from common.config.settings import Settings
 from common.video.clip_facts import Clip
+from common.video.clip_sources import camera_words
 from runtime.live.launch import Heard
 from runtime.live.table import table_of
 from runtime.terminal import warn
@@ -24,6 +25,7 @@ class Screen:
         """The run's display; `address` is that of its page, "" until it answers."""
         rate_hz = clip.views[0].fps / clip.every
         self._title = f"{clip.name}: {settings.mode} mode, {rate_hz:g} frames a second"
+        self._cameras = camera_words(settings)
         self._console = console
         self._address = address
         self._told: set[str] = set()
@@ -34,7 +36,7 @@ class Screen:
     def shown(self, names: list[str]) -> Iterator[Callable[[Heard], None]]:
         """A function that shows the newest pulses and news; the last ones stay when the run is
         over."""
-        table = table_of(names, {}, self._title)
+        table = table_of(names, {}, self._title, self._cameras)
         with LiveDisplay(
             table, console=self._console, refresh_per_second=4, transient=True
         ) as display:
@@ -42,7 +44,7 @@ class Screen:
             def show(heard: Heard) -> None:
                 nonlocal table
                 self._news(heard)
-                table = table_of(names, heard.pulses, self._title)
+                table = table_of(names, heard.pulses, self._title, self._cameras)
                 display.update(table)
 
             yield show

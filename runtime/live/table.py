@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import Final
 
 from rich.box import SIMPLE_HEAD
+from rich.markup import escape
 from rich.table import Table
 
 from common.bus.control_messages import Pulse
@@ -28,8 +29,15 @@ COLOURS: Final = {
 }
 
 
-def table_of(names: Sequence[str], pulses: Mapping[str, Pulse], title: str) -> Table:
+def table_of(
+    names: Sequence[str],
+    pulses: Mapping[str, Pulse],
+    title: str,
+    cameras: Sequence[str] = (),
+) -> Table:
     """The state of every process; one without a message yet is starting.
+
+    A viewer is shown with what `cameras` calls its camera, by its number, where that is a name.
 
     Latency is from a frame's capture to the end of the process's work on it. `missed` counts
     deadlines: work that ended more than a frame later.
@@ -38,8 +46,14 @@ def table_of(names: Sequence[str], pulses: Mapping[str, Pulse], title: str) -> T
     for column, side in COLUMNS:
         table.add_column(column, justify="left" if side == "left" else "right", no_wrap=True)
     for name in names:
-        table.add_row(*_cells(name, pulses.get(name)))
+        table.add_row(*_cells(_shown_name(name, cameras), pulses.get(name)))
     return table
+
+
+def _shown_name(process: str, cameras: Sequence[str]) -> str:
+    """The name of a process, and of its camera where that has one."""
+    words = {f"viewer {n}": word for n, word in enumerate(cameras, 1) if word != f"camera {n}"}
+    return f"{process} ({escape(words[process])})" if process in words else process
 
 
 def _cells(name: str, pulse: Pulse | None) -> list[str]:

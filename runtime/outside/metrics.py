@@ -46,6 +46,19 @@ def families(rooms: Mapping[str, RunFigures], now_s: float) -> Iterator[Metric]:
     yield from _states(parts, now_s)
     yield _latencies(rooms)
     yield from _bodies(rooms)
+    yield _names(rooms)
+
+
+def _names(rooms: Mapping[str, RunFigures]) -> Metric:
+    """1 for each camera of a run's rig, labelled with its name and its viewer."""
+    family = GaugeMetricFamily(
+        "tritrack_camera_info", "Name of each viewer's camera.", labels=("room", "part", "camera")
+    )
+    for room, figures in rooms.items():
+        rig = () if figures.cameras is None else figures.cameras.rig.cameras
+        for number, camera in enumerate(rig, 1):
+            family.add_metric((room, f"viewer {number}", camera.name), 1)
+    return family
 
 
 Parts = Sequence[tuple[str, str, PartFigures]]

@@ -30,7 +30,7 @@ const heard = {
     greeting = told;
     at("title").textContent = told.title;
     document.title = `${told.title} · tritrack`;
-    room = new Room(at("room"), told.cylinders);
+    room = new Room(at("room"), told.cylinders, told.cameras);
     actions = new Actions(told.commands, (what) => { if (socket.readyState === WebSocket.OPEN) socket.send(JSON.stringify({ what })); });
     chooser(told.angles);
   },
@@ -38,7 +38,7 @@ const heard = {
     room.setCameras(told);
     if (views.length !== told.cameras.length) {
       at("views").replaceChildren();
-      views = told.cameras.map((_, i) => new View(i + 1, at("views")));
+      views = told.cameras.map((_, i) => new View(greeting.cameras[i], at("views")));
     }
     refresh();
   },

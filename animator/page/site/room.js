@@ -10,9 +10,10 @@ const CYLINDER = [...CIRCLE.map(([x, z]) => [x, 0, z]), ...CIRCLE.map(([x, z]) =
 const BALL = [-0.97, -0.85, -0.62, -0.25, 0.25, 0.62, 0.85, 0.97].flatMap((y) => CIRCLE.map(([x, z]) => [x, z].map((value) => value * Math.sqrt(1 - y * y))).map(([x, z]) => [x, y, z]));
 
 export class Room {
-  constructor(canvas, cylinders) {
+  constructor(canvas, cylinders, names) {
     this.canvas = canvas;
     this.cylinders = cylinders; // so many solids are cylinders, the others balls
+    this.names = names; // of the cameras
     this.solids = [];
     this.cameras = [];
     this.eye = { yaw: 0.6, pitch: 0.2, away_m: 4.6 };
@@ -104,7 +105,7 @@ export class Room {
       const near = corners.map((corner) => project(corner.map((value, axis) => eye[axis] + 0.3 * (value - eye[axis]))));
       const at = project(eye);
       near.forEach((corner, k) => { stroke(pen, at, corner); stroke(pen, corner, near[(k + 1) % near.length]); });
-      if (at[2] > 0.1) pen.fillText(`camera ${i + 1}`, at[0] + 8, at[1] - 8);
+      if (at[2] > 0.1) pen.fillText(this.names[i], at[0] + 8, at[1] - 8);
     });
     pen.stroke();
   }

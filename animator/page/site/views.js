@@ -5,20 +5,20 @@ const LIMB_WIDTH = 1.6;
 const SURE = 0.5; // joints that are less sure are hollow
 
 export class View {
-  constructor(number, place) {
+  constructor(name, place) {
     this.figure = document.createElement("figure");
     this.canvas = document.createElement("canvas");
     this.canvas.setAttribute("role", "img");
     const caption = document.createElement("figcaption");
     const title = document.createElement("b");
-    title.textContent = `camera ${number}`;
+    title.textContent = name;
     this.sees = Object.assign(document.createElement("span"), { className: "sees" });
     this.score = document.createElement("span");
     this.hint = Object.assign(document.createElement("span"), { className: "hint" });
     caption.append(title, this.sees, this.score, this.hint);
     this.figure.append(this.canvas, caption);
     place.append(this.figure);
-    this.number = number;
+    this.name = name;
     this.picture = null;
     this.wanted = "";
   }
@@ -29,8 +29,8 @@ export class View {
     this.score.textContent = view?.joints.length ? `fit ${view.score.toFixed(2)}` : "";
     this.hint.textContent = view ? view.hint : "nothing heard from it";
     this.canvas.setAttribute("aria-label", view
-      ? `camera ${this.number}: ${view.joints.length ? `the person, ${view.sees}` : "nobody"}${view.hint ? `, ${view.hint}` : ""}`
-      : `camera ${this.number}: nothing heard from it`);
+      ? `${this.name}: ${view.joints.length ? `the person, ${view.sees}` : "nobody"}${view.hint ? `, ${view.hint}` : ""}`
+      : `${this.name}: nothing heard from it`);
     if (view?.jpeg) this.load(view, confidence, greeting);
     else this.draw(view, confidence, greeting, null);
   }
