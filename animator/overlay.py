@@ -14,10 +14,10 @@ from common.body.body import JOINT_NAMES, LIMB_ENDS, LIMBS, Vector
 from common.video.pictures import Image
 
 SHOWN: Final = (640, 480)
-"""Largest width of an overlay, pixels: more shows no more."""
+"""Largest size of a picture in the overlay, pixels: more shows no more."""
 LEAST_HEIGHT_PX: Final = 360
-"""Smallest width, pixels: smaller pictures are enlarged by a whole number, as a stick would hide
-an arm at 160x120."""
+"""Smallest height, pixels: smaller pictures are enlarged by a whole number, as a stick would
+hide an arm at 160x120."""
 SIDE_SHARE: Final = 0.7
 """Width of the view from the side over its height: arms reach 0.8 m to the front and back."""
 TALL_M: Final = 2.3

@@ -9,8 +9,8 @@ from scipy.spatial.transform import Rotation
 from common.body.body import Vector
 
 OPPOSITE: Final = 1e-12
-"""Cosine below which two directions count as opposite: any turn of 180 degrees maps one to the
-other."""
+"""Distance from opposite within which two directions count as such: any turn of 180 degrees maps
+one to the other."""
 
 
 def arc(start: Vector, ends: NDArray[np.float64]) -> Rotation:

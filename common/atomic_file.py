@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Final
 
 FULL: Final = (errno.ENOSPC, errno.EDQUOT)
-"""The errno values that mean that the disk, the quota or the file size limit is exhausted."""
+"""The errno values that mean that no space is left on the disk or in the quota."""
 NAME_BYTES: Final = 8
-"""Number of random letters in the name of a file that is still being written."""
+"""Number of random bytes in the name of a file that is still being written."""
 
 
 class FileRefused(ValueError):

@@ -32,8 +32,8 @@ class KeptOverloads(NullCache):
     the function depends on.
 
     numba's own cache looks at a function's own file alone, so it misses a change of a callee in
-    another file; and two processes that compile two signatures at once write the same file name.
-    Here the name contains all that decides the content, and the file is complete or absent.
+    another file. Two processes that compile two signatures at once would also write the same file
+    name. Here the name contains all that decides the content, and the file is complete or absent.
     """
 
     def __init__(self, function: Callable[..., object]) -> None:
@@ -91,7 +91,7 @@ def compiling(**flags: bool | str) -> Compiler:
     """A decorator: numba's njit with these flags and this cache; other threads run during its
     calls.
 
-    Functions of a module that runs as the program, or of a test, are compiled anew each time: the
+    Functions of a module that runs as the program, or of a test, are compiled anew each time. The
     next process does not know them by the name `__main__`, and no digest covers them.
     """
 

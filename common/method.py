@@ -11,10 +11,10 @@ class Method(msgspec.Struct, frozen=True, kw_only=True):
     """How pictures become a body; each field: False is as the paper prints it, True a departure.
 
     Steps read the fields; none asks for the name of a mode. The ablation switches each field alone.
-    What is not listed is as printed, or is a reading without which the print does not run (M1 to
-    M25, and where P and T of docs/requirements.md are ambiguous), or is left open by the print in
-    every mode: the pose before the opening posture and after a loss, found without an earlier pose,
-    and whether a pose is believed.
+    Everything else is as printed, with two exceptions. Some readings are needed for the print to
+    run (M1 to M25, and where P and T of docs/requirements.md are ambiguous). Some things the print
+    leaves open in every mode: the pose before the opening posture and after a loss, and whether a
+    pose is believed.
     """
 
     steady_light: bool
@@ -37,8 +37,8 @@ class Method(msgspec.Struct, frozen=True, kw_only=True):
     """The viewer detects joints in the picture itself; the body is estimated from those and
     silhouettes."""
     clutter_removal: bool
-    """What both views do not show as one piece of space is no part of the person, where the
-    network is surer of the rest."""
+    """Clutter is removed: parts of the silhouettes that both views do not show as one piece of
+    space, where the network is surer without them."""
 
     armless_shift: bool
     """The body's place is searched with trunk, head and legs: arms still have old angles (P27)."""

@@ -23,9 +23,9 @@ SURE: Final = 0.5
 LEAST: Final = 5
 """Fewest such landmarks."""
 ASTRAY: Final = 0.13
-"""Median distance of the sure landmarks from the body's joints, in heights of the body, from
-which it is not believed: 0.03 at most in 99 % of two performers' frames, 0.17 in the median of
-frames that are more than 200 mm off (docs/measurements.md)."""
+"""Median distance of the sure landmarks from the body's joints, in heights of the body, above
+which it is not believed. It is 0.03 at most in 99 % of two performers' frames, and 0.17 in the
+median of frames that are more than 200 mm off (docs/measurements.md)."""
 FACES: Final = 0.8
 """Confidence of a view's facing from which on it is compared with the body's."""
 TURNED_DEG: Final = 100.0

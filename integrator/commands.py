@@ -9,7 +9,7 @@ from integrator.merge_state import State
 from integrator.single.sight import Annotations
 
 OTHERWISE: Final[dict[str, Orientation]] = {"front": "forward_right", "back": "backward_right"}
-"""Prior for a person's facing."""
+"""Default orientations for "front" and "back", where nothing else is known."""
 
 
 def step(

@@ -104,7 +104,7 @@ def step(state: State, report: View) -> tuple[State, list[Instant]]:
 
 def are_together(earlier: Taken, later: Taken, period_s: float) -> bool:
     """Whether two views' frames are of one instant: half a period apart at most, and the earlier
-    one's camera, which may be faster, is not known to take another frame nearer to the later."""
+    one's camera is not known to take another frame nearer to the later."""
     return later.captured_s - earlier.captured_s <= period_s / 2 and _is_nearest(earlier, later)
 
 

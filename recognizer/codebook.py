@@ -17,9 +17,9 @@ SYMBOLS: Final = 64
 """Size of the alphabet (section 5.1)."""
 
 WEIGHTS: Final = np.array([3.0 if "_hip" in entry else 1.0 for entry in FEATURE_NAMES])
-"""Weight of each entry in distances. Legs move less than arms, and among 64 symbols too few
-would distinguish their motions: with 1, 2, 3 and 4, and the best width of sharing for each, 352,
-363, 374 and 369 of 420 held-out synthetic performances were recognised correctly."""
+"""Weight of each entry in distances. Legs move less than arms: with equal weights too few of 64
+symbols would distinguish their motions. With 1, 2, 3 and 4, and the best width of sharing for
+each, 352, 363, 374 and 369 of 420 held-out synthetic performances were recognised correctly."""
 
 STARTS: Final = 4
 """Number of k-means runs from different codewords; the tightest result is kept."""

@@ -72,11 +72,11 @@ def with_pose(given: Rows) -> Rows:
 def features(given: Rows) -> Features:
     """The ten angles of each frame as a point of a space without seams, shape (n, 16).
 
-    The observation is the paper's; the space, which defines neighbouring symbols, is ours. As
-    numbers, theta_X = 179 and -179 lie far apart; with theta_X = 90 (arm forward) every theta_Z is
-    the same pose; and (theta_X, theta_Z), (180 - theta_X, theta_Z + 180) are one direction. So
-    upper arms and thighs enter as the direction of their two angles in the body's own frame,
-    Rz(theta_Z) Rx(theta_X) (0, 1, 0), and elbows as cosine and sine.
+    The observation is the paper's; the space, which defines neighbouring symbols, is ours. Plain
+    numbers would not do. theta_X = 179 and -179 lie far apart. With theta_X = 90 (arm forward)
+    every theta_Z is the same pose. (theta_X, theta_Z) and (180 - theta_X, theta_Z + 180) are one
+    direction. So upper arms and thighs enter as the direction of their two angles in the body's own
+    frame, Rz(theta_Z) Rx(theta_X) (0, 1, 0), and elbows as cosine and sine.
 
     Source: Huang & Chung 2004, section 5.1 (P57); section 2.2, M_N^S (C3, C4).
     """

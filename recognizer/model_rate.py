@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from recognizer.features import Rows
 
 PERIOD_S: Final = 1 / 15
-"""Frame rate of the models' training data, Hz."""
+"""Time between frames of the models' training data."""
 EARLY: Final = 0.4
 """Share of a period by which a frame may come early: camera clocks jitter."""
 LONGEST: Final = 4

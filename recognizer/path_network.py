@@ -14,12 +14,12 @@ from recognizer.postures import Array, DensityModel
 SCALE: Final = 0.3
 """Weight of a log density: neighbouring frames are nearly equal."""
 CAP_LIMB, CAP_TRAVEL = 4.0, 36.0
-"""Upper bound of an entry's squared deviation in a frame: two for a limb's direction, in which
-people differ, six for travel, in which they do not."""
+"""Upper bounds of an entry's squared deviation in a frame: two deviations for a limb's
+direction, in which people differ, six for travel, in which they do not."""
 LOOSENESS: Final = 2.0
 """Factor by which variances are widened for people outside the training data."""
 FILLER: Final = 10.0
-"""Log density of the filler for any pose: a posture's own poses may be as bad."""
+"""Loss of log density of the filler for any pose: a posture's own poses may be as bad."""
 REST_CAP: Final = 4.0
 """Mean squared deviation of an entry up to which a pose counts as standing."""
 STILL, MOVING = 0.2, 0.6

@@ -11,7 +11,7 @@ from recognizer.path_network import COUNT, LAST, ONSET, SCALE, PathNetwork
 from recognizer.postures import Array
 
 LEAST_FRAMES: Final = 10
-"""Shortest performance, seconds: the quickest squat takes 1.5 s, anything shorter is a twitch."""
+"""Shortest performance, frames: the quickest squat takes 1.5 s, anything shorter is a twitch."""
 LEAST_STATES: Final = 3
 """Number of a posture's five states that must be met: a part of a posture is not the posture."""
 MISFIT: Final = 42.0

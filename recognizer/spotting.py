@@ -17,9 +17,9 @@ STILL_FRAMES: Final = 12
 two kicks."""
 
 STILL: Final = 0.15
-"""Spread of feature vectors (root mean square distance from their mean; 0.15 is one limb swaying by
-9 degrees) below which a body stands still: of true angles, 0.07 at most in T-poses and 0.19 at
-least in a second of any motion (two performers, docs/measurements.md)."""
+"""Spread of feature vectors (root mean square distance from their mean) below which a body
+stands still; 0.15 is one limb swaying by 9 degrees. With true angles it is 0.07 at most in T
+poses and 0.19 at least in a second of any motion (two performers, docs/measurements.md)."""
 
 MISSED_FRAMES: Final = 15
 """Frames in a row without a pose that end the motion in progress: the next pose begins a new
@@ -71,9 +71,9 @@ def init(model: PostureModel | None, window_frames: int) -> State:
 def step(state: State, row: NDArray[np.float64] | None) -> tuple[State, Judgement]:
     """Process one frame and judge the window that ends with it.
 
-    The models have no standing. So a standstill (the opening posture, say) has no name; a motion
-    gets its name after a second, without the frames before the standstill; and a motion that ends
-    in standing keeps its name until only standing is in the window. A frame without a pose adds
+    The models have no standing. So a standstill (the opening posture, say) has no name. A motion
+    gets its name after a second, without the frames before the standstill. A motion that ends in
+    standing keeps its name until only standing is in the window. A frame without a pose adds
     nothing.
 
     Args:

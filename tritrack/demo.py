@@ -24,7 +24,7 @@ POSTURE: Final = "raise_right_lateral"
 TAKE: Final = 1
 SIZE: Final = (320, 240)
 MOTION_S: Final = 14.0
-"""Length of the demo in performances: five, and the moment in which the fifth is reported."""
+"""Length of the demo, seconds: five performances, and the moment in which the fifth is reported."""
 
 
 class DemoFailed(RuntimeError):

@@ -1,7 +1,7 @@
 """OpenSim: a model of the run's own skeleton, and its motion in that model's coordinates.
 
-Every bone is a massless body with three rotations in the order of the BVH (about z, x, y); markers
-with the landmarks' names are at their ends, so that OpenSim's inverse kinematics runs on the TRC
+Every bone is a massless body with three rotations in the order of the BVH (about z, x, y). Markers
+with the landmarks' names are at the bones' ends; so OpenSim's inverse kinematics runs on the TRC
 file too. Source: OpenSim 4 documentation, CustomJoint, SpatialTransform, storage (.mot) files.
 """
 

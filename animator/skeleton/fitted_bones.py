@@ -24,8 +24,8 @@ _AT: Final = {name: i for i, name in enumerate(ALL_JOINT_NAMES)}
 def fitted(skeleton: Skeleton, joints_m: Joints, weights: Floats) -> Joints:
     """The skeleton's joints nearest to these, by weighted least squares.
 
-    Where a bone is too short for its tracked ends, both ends move, and the bones beyond; if bones
-    were aimed one after the other, the whole difference would be at the farther end.
+    Where a bone is too short for its tracked ends, both ends move, and the bones beyond. Aiming the
+    bones one after the other would put the whole difference at the farther end.
 
     Args:
         skeleton: The run's skeleton.

@@ -61,10 +61,10 @@ def limb_twists(
 ) -> Vector:
     """Twist of each upper limb about its own axis, radians, without jumps.
 
-    A bent limb determines it: from STRAIGHT_DEG on its hinge's axis is met exactly. The twist of a
-    straighter one changes least over time, by least squares with each frame's evidence as its
-    weight; its lower part then deviates from the hinge's plane, by less than it is bent. Twists are
-    averaged as directions, which takes the shorter way.
+    A bent limb determines it: from STRAIGHT_DEG on its hinge's axis is met exactly. For a
+    straighter limb the twist is the one that changes least over time: least squares, each frame
+    weighted by its evidence. The lower part then deviates from the hinge's plane, by less than it
+    is bent. Twists are averaged as directions, which takes the shorter way.
 
     Args:
         bends: (limbs, n) of each frame, from `bends_of`.

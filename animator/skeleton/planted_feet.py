@@ -16,10 +16,9 @@ Floats = NDArray[np.float64]
 BLEND_S: Final = 0.2
 """Seconds before and after a contact in which a foot moves to its measured place."""
 STANDS_FAST: Final = np.array([300.0, 3.0, 300.0])
-"""Resistance of a standing foot's ankle along each axis, relative to other joints: over the
-floor infinite, up and down moderate, since its tracked height varies by 8 mm, and a straight leg
-that is a centimetre too long bends by 18 degrees. Chosen on two performers
-(docs/measurements.md)."""
+"""Resistance of a standing foot's ankle along each axis, relative to other joints: infinite
+along the floor, moderate vertically. Its tracked height varies by 8 mm, and a straight leg that
+is a centimetre too long bends by 18 degrees. Chosen on two performers (docs/measurements.md)."""
 HIP: Final = 3.0
 """Resistance of a hip, relative to other joints: both carry the pelvis and all above."""
 

@@ -14,7 +14,7 @@ from common.rig.rig_file import CalibrationError
 
 LARGEST: Final = 10_000_000
 PLACES: Final = "extrinsics"
-"""First words of the file that stereo_calib writes beside intrinsics.yml."""
+"""Stem of the name of the file that stereo_calib writes beside intrinsics.yml."""
 MATRICES: Final = ("camera_matrix", "cameraMatrix", "K", "M")
 BENT: Final = ("distortion_coefficients", "distCoeffs", "D")
 SIZES: Final = (("image_width", "image_height"), ("width", "height"))

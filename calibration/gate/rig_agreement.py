@@ -24,7 +24,8 @@ SURE: Final = 0.6
 """Mean confidence of a view's landmarks below which an instant does not count."""
 SURE_FACING: Final = 0.85
 USUAL_M: Final = 1.75
-"""Stature of a person with this ankle height, statures: people differ by a centimetre."""
+"""Stature, metres, from which the height of the ankles is taken: it differs among people by a
+centimetre."""
 NARROW: Final = 0.05
 """Squared sine of the angle between sight lines that are nearly parallel."""
 STANDS: Final = 0.4
@@ -33,7 +34,7 @@ APART_MM: Final = (60.0, 80.0)
 SOLES_MM: Final = ((-45.0, -75.0), (60.0, 95.0))
 FACING_DEG: Final = (45.0, 75.0)
 MOTION_MM: Final = (40.0, 60.0)
-"""Difference between both views' motion of the joints, metres: the first is usual with a good
+"""Difference between both views' motion of the joints, millimetres: the first is usual with a good
 rig, the second occurs with no good rig; belief falls in between. Motions of one take differ by
 30 mm at most, motions of different takes mostly by 60. The bounds above rest on the same clips:
 with the right rig views lie 31 mm apart at most (56 mm for people that the network sees less

@@ -25,8 +25,8 @@ FREED: Final = {
 }
 """Single faults, and the numbers of the guess that would mend each."""
 ONE_SIDE_DEG: Final = 15.0
-"""Facing difference, degrees, at least 30, that two cameras see of a person who faces any way:
-the angle between them."""
+"""Median facing difference, degrees, below which both views show one side of the person. Two
+cameras must differ by the angle between them, 30 at least."""
 SIMPLER: Final = 1.0
 """Log likelihood that each additional number must gain."""
 AGAIN: Final = "calibrate again (tritrack calibrate person), or go on with --trust-calibration"
@@ -36,7 +36,7 @@ class _Mended(NamedTuple):
     name: str
     cost: float
     change: Vector
-    """Half-width of the guess's range."""
+    """Change of the guess."""
 
 
 def advice_on(

@@ -29,11 +29,11 @@ SURE: Final = 0.6
 FEWEST, ENOUGH = 12, 40
 """Fewest moments in which both views must see the person, and most that are used."""
 MOST_APART_MM: Final = 65.0
-"""Distance between the places that two views give a joint, metres, above which a rig is not
+"""Distance between the places that two views give a joint, millimetres, above which a rig is not
 believed. With a good rig it is 28 mm at most for two performers, 52 mm for people that the
 landmark network sees less well (docs/measurements.md)."""
 FLOOR_MM: Final = (-35.0, 85.0)
-"""Height of the soles with a good rig, metres, from ankles of bare feet: heels lift them by up
+"""Height of the soles with a good rig, millimetres, from ankles of bare feet: heels lift them by up
 to 8 cm."""
 STATURES_M: Final = (0.9, 2.3)
 MOST_LATE_FRAMES: Final = 0.75
@@ -42,7 +42,7 @@ MOST_FACING_DEG: Final = 45.0
 quarter turn, because two pictures of one camera differ by the angle between the rig's cameras.
 With a good rig facings differ by 13 degrees at most (docs/measurements.md)."""
 MOST_MOTION_MM: Final = 45.0
-"""Difference between the views' motions, metres: 30 mm at most within one take, mostly 60
+"""Difference between the views' motions, millimetres: 30 mm at most within one take, mostly 60
 between different takes."""
 
 

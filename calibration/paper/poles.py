@@ -103,10 +103,10 @@ def _refuse_beyond(name: str, length_m: float | None, low: float, high: float) -
 def poles(measured: Poles) -> tuple[Rig, Quality]:
     """Focal lengths, distances and heights of the paper's two cameras from the tops of poles.
 
-    For poles at A, B and C this is lambda1 = Zc1 (x1C - x1A) / D_X and Zc1 = D_Z t1B /
-    (t1B - t1A), and their like for camera 2 (M2, P43); more poles are fitted by least squares, and
-    a distance by tape joins as one more observation. The error bars are what readings to the
-    pixel leave open: from few poles in a small picture a distance is hardly known.
+    For poles at A, B and C this is lambda1 = Zc1 (x1C - x1A) / D_X and Zc1 = D_Z t1B / (t1B - t1A),
+    and the same for camera 2 (M2, P43). More poles are fitted by least squares. A distance by tape
+    is one more observation. The error bars are those of readings to the pixel: with few poles in a
+    small picture a distance is hardly known.
 
     Raises:
         CalibrationError: When the poles do not determine a camera.

@@ -32,8 +32,9 @@ FEW, FEW_EACH = 24, 6
 """Number of moments used to choose the right start; the second number is per clip, with several
 clips."""
 STARTS: Final = 3
-"""Number of the likeliest starts that are followed with camera 2 on each side of camera 1: all
-the likely ones of a walk may be mirror images (synthetic rigs, seeds from 1000 on)."""
+"""Number of the likeliest starts that are followed on each side, camera 2 to the right and to
+the left of camera 1. All the likely ones of a walk may be mirror images (synthetic rigs, seeds
+from 1000 on)."""
 YAW: Final = PLACE["yaw_2"]
 ELSEWHERE: Final = math.cos(math.radians(45.0))
 """Starts whose camera 2 ends within this angle, degrees, count as one: they would end alike."""

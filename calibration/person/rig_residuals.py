@@ -33,9 +33,9 @@ TALL_SHARE: Final = 0.93
 upright."""
 FLOOR_M: Final = 0.02
 ON_THE_RIGHT, SIDE_EDGE = 2.45, 0.2
-"""Sigmas against a camera 2 to the right of camera 1, and the slope of that step: far away,
-mirror images differ in the facing alone, and where that is unsure the paper's rig has camera 2
-on the left (C1)."""
+"""Sigmas against a camera 2 to the right of camera 1, and the slope of that step. From far away,
+mirror images differ in the facing alone. Where the facing is unsure the paper's rig decides,
+which has camera 2 on the left (C1)."""
 FOCALS_ALIKE: Final = 0.3
 """Standard deviation of the logarithm of both focal lengths' ratio."""
 FLOOR_FRAMES, FACING_FRAMES = 6.0, 8.0
@@ -50,9 +50,9 @@ class Explained(NamedTuple):
     """One clip under a rig."""
 
     met: Meeting
-    """(n, 15) places."""
+    """(n, 15) joints that both views show, triangulated."""
     used: NDArray[np.bool_]
-    """(n, 15) residuals."""
+    """(n, 15) which of them count."""
     lengths: Numbers
     """(n, 12) residuals of the segments, sigmas."""
     lengths_used: NDArray[np.bool_]

@@ -29,7 +29,7 @@ class Fit(NamedTuple):
 
     late_s: float
     costs: Vector
-    """(moments,) squared misses of the best relation; 0 where not both show the person."""
+    """(moments,) cost of the landmarks' misses; 0 where not both views show the person."""
     weights: Vector
     """(moments,) weights of these landmarks."""
 

@@ -37,9 +37,9 @@ FINE_FRAMES: Final = np.arange(-6, 7) / 4
 SHARED_S: Final = 2.0
 """Least time that both views must have in common, seconds, for a delay to be reported."""
 AS_GOOD, SURE_AS_GOOD = 1.2, 1.4
-"""Ratio of a delay's misses to those of the likeliest, up to which it may be the right one:
-SURE_AS_GOOD where landmarks err much and the delay would change the times, AS_GOOD for the times
-as they are."""
+"""Ratio of a delay's misses to those of the likeliest, up to which it may be the right one.
+SURE_AS_GOOD is for landmarks that err much and a delay that would change the times, AS_GOOD for
+the times as they are."""
 CLEAR: Final = 0.2
 """Misses of the likeliest delay up to which landmarks count as accurate: 0.06 to 0.15 in walks
 of two performers, 0.3 and more in synthetic ones (docs/measurements.md)."""

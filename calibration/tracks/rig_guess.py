@@ -25,7 +25,7 @@ FARTHEST: Final = 20.0
 then taken back, stays finite at e^20."""
 RIG: Final = len(NAMES)
 BODY: Final = slice(RIG, RIG + len(LENGTHS))
-"""Logarithms of the person's lengths, metres."""
+"""Indices of the logarithms of the person's lengths, metres."""
 LATE: Final = RIG + len(LENGTHS)
 """Index of the first delay."""
 

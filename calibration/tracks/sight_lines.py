@@ -68,8 +68,8 @@ def meeting(
     """Triangulate points from their rays (..., 3) and the errors in each picture (...).
 
     In the plane of both rays each ray fixes what the other leaves free; across it both contribute.
-    A ray's error in metres grows with the distance to its camera: with a constant error in metres,
-    a world of too short a focal length would have smaller misses, and the fit would find it.
+    A ray's error in metres grows with the distance to its camera. If it were constant, a world of
+    too short a focal length would have smaller misses, and the fit would prefer it.
     """
     (one, other), (first, second) = cameras, rays
     base = other.centre_m - one.centre_m

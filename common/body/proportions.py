@@ -95,25 +95,26 @@ HIP_SHARE, KNEE_SHARE, ANKLE_SHARE = 0.530, 0.285, 0.039
 
 
 PER_ELLIPTIC, PER_ROUND = 3, 2
-"""Lengths of a cylinder: two radii and a height, or an arm's radius and height."""
+"""Number of lengths of a cylinder: two radii and a height, or an arm's radius and height."""
 LENGTHS: Final = 26
-"""Index at which a limb begins in a body vector, which starts with the BDPs in the order of
-LIMBS; of paired limbs, the right one."""
+"""Number of lengths at the start of a body vector: the BDPs in the order of LIMBS. The indices
+below are those of the right limb."""
 TORSO_RADIUS, TORSO_HEIGHT, HEAD_HEIGHT = 0, 2, 5
 UPPER_LEG_RADIUS, UPPER_LEG_HEIGHT, LOWER_LEG_HEIGHT = 6, 8, 14
 ARMS: Final = 18
 """Index of the arms' lengths; the first is a radius."""
 UPPER_ARM_HEIGHT, LOWER_ARM_HEIGHT = 19, 23
 SHOULDER_ASIDE, SHOULDER_UP, HIP_ASIDE = 26, 27, 28
-"""Shoulder and hip relative to the navel, in body axes, both sides alike."""
+"""Indices of the places of shoulder and hip relative to the navel, in body axes, both sides
+alike."""
 ELBOW_ALONG, WRIST_ALONG, KNEE_ALONG, ANKLE_ALONG = 29, 31, 33, 35
-"""Distance of elbow, wrist, knee and ankle from the shoulder or hip along the straight limb,
-right then left."""
+"""Indices of the distances of elbow, wrist, knee and ankle from the shoulder or hip along the
+straight limb, right then left."""
 HIPS_UP: Final = 37
-"""Height of the anatomical hips above the navel."""
+"""Index of the height of the anatomical hips above the navel."""
 SHOULDER_INSET: Final = 38
-"""How far the shoulders' joint centres, and the arms' landmarks with them, lie inside the
-cylinders' shoulders."""
+"""Index of the distance by which the shoulders' joint centres, and the arms' landmarks with
+them, lie inside the cylinders' shoulders."""
 BODY: Final = 39
 """Length of a body vector."""
 

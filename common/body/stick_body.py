@@ -13,10 +13,9 @@ SIDES: Final = ("r", "l")
 """LIMBS names; r is on the left of the picture, as a person's right who faces the camera (T10)."""
 
 X, Y, STATURE, BREADTH, ANGLE, RATIO, GIRTH = 0, 1, 2, 3, 4, 14, 24
-"""A stick pose: pelvis (px, rows down), stature (px), apparent breadth of the trunk over its
-frontal breadth, then an angle (degrees, 0 to the right, 90 up, as in table 3.3) and a
-foreshortening ratio for each of LIMBS, and the thickness of limbs, clothes included, over that
-of the proportions."""
+"""A stick pose: pelvis (px, rows down), stature (px), apparent over frontal breadth of the
+trunk. Then for each of LIMBS an angle (degrees, 0 to the right, 90 up, as in table 3.3) and a
+foreshortening ratio. Last the thickness of clothed limbs over that of the proportions."""
 POSE_SIZE: Final = 25
 
 TORSO, HEAD, SHOULDER_LINE, HIP_LINE = 0, 1, 10, 11

@@ -1,9 +1,9 @@
 """A limb in the picture as row intervals: an exact rule, drawn and counted word by word.
 
-A limb's contour is the hull of two discs in a picture whose rows are sheared and stretched so
-that the limb's elliptic section becomes a circle. A pixel belongs to it when its centre does
-(centre of the top-left pixel: (0.5, 0.5)); a centre within EDGE of the contour counts as inside,
-so that rounding cannot split this rule from its definition (`inside`).
+A limb's contour is the hull of two discs in a picture whose rows are sheared and stretched so that
+the limb's elliptic section becomes a circle. A pixel belongs to it when its centre does (centre of
+the top-left pixel: (0.5, 0.5)). A centre within EDGE of the contour counts as inside: so rounding
+cannot separate this rule from its definition (`inside`).
 
 Source: design: exact pixel-centre rule; requirement P9.
 """

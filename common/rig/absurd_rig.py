@@ -14,8 +14,8 @@ from common.rig.upright_camera import quarters_of
 FOCALS: Final = (0.2, 20.0)
 """Bounds of the focal length, picture widths: a fisheye, a telescope."""
 APART_DEG: Final = (30.0, 150.0)
-"""Smallest angle between two cameras' axes, degrees; below it both show nearly one silhouette,
-or its mirror image."""
+"""Bounds of the angle between two cameras' axes, degrees: outside them both show nearly one
+silhouette, as it is or mirrored."""
 TOGETHER_M, APART_M = 0.05, 60.0
 DEEP_M: Final = 1.0
 """Depth of a camera below the floor, metres, from which on the floor must be wrong."""
@@ -25,8 +25,8 @@ ALIKE: Final = 0.8
 """Smallest agreement of two cameras' up axes that counts as level, whatever the world's y;
 unless they are rolled, and agree better once their pictures are turned upright."""
 HUNG_M: Final = 0.2
-"""Whether cameras are over the floor: upside-down ones are, except where the world's y points
-down."""
+"""Smallest height above the floor, metres, of cameras that hang upside down; lower ones mean
+that the world's y points down."""
 INSIST: Final = (
     "calibrate again, or trust it (--trust-calibration, trust_calibration = true in settings)"
 )

@@ -12,8 +12,8 @@ SAME_RATE: Final = 0.01
 """Relative difference of frame rates that are treated as equal: they drift apart by less than a
 frame in 100."""
 SAME_VARYING: Final = 0.05
-"""The same where a view's frames have times of their own, which pair them: the rate is that of
-the median gap, which times rounded to milliseconds give no better (33 ms of 33.3)."""
+"""The same where a view's frames have times of their own, which pair them. The rate is then that
+of the median gap, and times rounded to milliseconds give it no better (33 ms of 33.3)."""
 
 
 def at_one_rate(views: tuple[ClipView, ...], every: int) -> tuple[ClipView, ...]:

@@ -41,7 +41,7 @@ sum is the stature, which the silhouette determines."""
 LEAST_FIT: Final = 1.2
 """Sum of S over both views below which a silhouette contains more than the body."""
 WIDEST: Final = 1.2
-"""Bounds of the radii, over the thesis's at that stature: a limb that would be wider covers
+"""Largest radius of a limb, over the thesis's at that stature: a wider limb would cover
 something else."""
 FACTORS: Final = (0.85, 0.93, 1.08, 1.18)
 ROUNDS: Final = 3

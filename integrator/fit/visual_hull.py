@@ -23,13 +23,13 @@ from integrator.rig.undistortion import undistorted
 CELL_M: Final = 0.05
 """Side of a cell, metres: thinner than an arm, so that it stays connected to its hand."""
 ASIDE_CELLS: Final = 40
-"""Half width of the volume, metres, about the middle of the silhouettes, which clutter draws
-away from the person."""
+"""Half width of the volume, cells: 2 m to each side of the middle of the silhouettes, which
+clutter draws away from the person."""
 UP_CELLS: Final = 48
 FLOOR_M: Final = 0.05
 """Height below which a cell lies on the floor, metres."""
 REACH_CELLS: Final = 10
-"""Largest distance that an arm may reach out of one of the pictures, metres."""
+"""Largest distance that an arm may reach out of one of the pictures, cells."""
 CLUTTER_SHARE: Final = 0.03
 """Share of a silhouette that must be clutter to be removed: the hull is coarse."""
 

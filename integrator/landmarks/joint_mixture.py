@@ -78,9 +78,9 @@ class Evidence(NamedTuple):
 def most_probable(given: Evidence, place_m: Vector, precision: Vector) -> float:
     """The highest log probability of the place of one joint.
 
-    Rounds of weighted least squares (the EM algorithm of Dempster 1977) climb to a peak from the
-    proposal, from the point of each ray that is nearest to it, and from where the rays of two views
-    meet. The highest peak counts.
+    Rounds of weighted least squares (the EM algorithm of Dempster 1977) climb to a peak. They start
+    at the proposal, at the point of each ray nearest to it, and where the rays of two views meet.
+    The highest peak counts.
 
     Args:
         given: The evidence.

@@ -28,9 +28,9 @@ _LIMBS: Final = 2 * len(_PAIRS)
 USUAL: Final = np.array([0.16, 0.16, 0.145, 0.145, 0.25, 0.25, 0.245, 0.245, 0.205, 0.12])
 """(10,) lengths in statures, of adults."""
 UNLIKE: Final = 1.3
-"""Bounds of a length, over the adult one. Lengths are learnt from joints that were pulled to
-learnt lengths: without bounds, where one camera gives no depth, a long limb grew further within
-minutes."""
+"""Largest ratio of a length to the adult one, and its inverse the smallest. Lengths are learnt
+from joints that were pulled to learnt lengths: without bounds, where one camera gives no depth,
+a long limb grew further within minutes."""
 
 
 def lengths_m(before: Vector | None, joints_m: Vector, stature_m: float) -> Vector:

@@ -15,9 +15,9 @@ from integrator.landmarks.joint_mixture import SHOWN
 from integrator.landmarks.landmark_rays import Rays
 
 USUAL: Final = np.array([0.015, 0.015, 0.015, math.radians(3.0)])
-"""Offset and turn of proposals where only landmarks err, metres and radians: 95 % of two
-performers' instants are offset by no more than 1.5 times that and turned by no more than about
-twice that (docs/measurements.md)."""
+"""Offset and turn of proposals where only landmarks err, metres and radians. In 95 % of two
+performers' instants the offset is at most 1.5 times that, the turn about twice
+(docs/measurements.md)."""
 SURELY: Final = 1.5
 """Offset up to which a proposal is not changed, in units of USUAL; what exceeds it is
 subtracted."""

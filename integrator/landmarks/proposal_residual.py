@@ -19,9 +19,9 @@ FARTHEST: Final = 0.25
 DOUBTED_FROM: Final = 0.035
 """Residual from which a proposal is doubted, statures: a third have a larger one."""
 ODDS_EXPONENT: Final = 4.0
-"""Exponent of a residual over DOUBTED_FROM by which the proposal's odds fall. Of synthetic
-people before misleading backgrounds, joints of proposals of confidence .7 to .9 with residuals
-of .03, .045, .06, .08 and .1 were near in 76, 55, 47, 29 and 11 % (docs/measurements.md)."""
+"""Exponent of a residual over DOUBTED_FROM by which the proposal's odds fall. Measured on
+synthetic people before misleading backgrounds, for joints of confidence .7 to .9: at residuals
+of .03, .045, .06, .08 and .1, 76, 55, 47, 29 and 11 % of them were near (docs/measurements.md)."""
 TURNED: Final = 50.0
 """Factor by which the odds fall further where the proposal may have front for back: 1 % of those
 were near, 60 % roughly right (docs/measurements.md)."""

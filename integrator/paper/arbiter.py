@@ -22,11 +22,12 @@ def arbitrate(first: Sight, second: Sight, scale_ratio: float = 1.0) -> tuple[Fa
     """The facings of viewers 1 and 2, given that one of them sees the facade and the other the
     flank.
 
-    If one viewer alone changed its vote, both would see the same. The change is accepted, and the
-    other's facing changed as well, when its width lies farther beyond the threshold that it crossed
-    than the other's lies from the threshold that it would have to cross; otherwise it is reverted.
-    At a tie both stay as they were: the print's > in rules 1 and 2 and >= in rules 3 and 4 amount
-    to that. When both change at once, or none does, the votes stand.
+    If one viewer alone changed its vote, both would see the same. Two distances from thresholds are
+    compared: how far the changed viewer's width lies beyond the one that it crossed, and how far
+    the other's lies from the one that it would have to cross. If the first is larger both facings
+    change; otherwise the change is reverted. At a tie both stay as they were: the print's > in
+    rules 1 and 2 and >= in rules 3 and 4 amount to that. When both change at once, or none does,
+    the votes stand.
 
     Args:
         first: Viewer 1; its `before` differs from viewer 2's.

@@ -25,7 +25,7 @@ def lifted(side: str, hip_z_deg: float, squats: bool) -> bool:
     """Whether a leg is lifted, by the facade's theta_Z of its hip (P53, M16).
 
     Printed is 175 < theta_Z < 180 for the right leg, mirrored for the left. 180 itself is the
-    resting value and on the search's grid, so M16 reads |theta_Z - 180| <= 5; beyond the print, a
+    resting value and on the search's grid, so M16 reads |theta_Z - 180| <= 5. Beyond the print, a
     leg counts as lifted only where the knees are not bent in a squat.
     """
     inwards_deg = wrapped_deg(hip_z_deg - 180.0) * (-1.0 if side == "r" else 1.0)

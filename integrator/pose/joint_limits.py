@@ -26,9 +26,9 @@ TWIST_DEG: Final = 60.0
 forwards: a knee that bends forwards would take a half turn (T22: knees bend backwards)."""
 
 OFF: Final = 20.0
-"""Cost of a degree off a limb's direction, over that of a degree from the pose before: the
-direction is changed by up to 13 to 18 degrees before an arm is represented as raised over the
-head to the same place."""
+"""Cost of a degree off a limb's direction, over that of a degree from the pose before. With it
+an arm is turned by 13 to 18 degrees at most before another solution is taken, in which it is
+raised over the head to the same place."""
 
 _LOWS, _HIGHS = LOW_DEG[list(ANGLES_IN_POSE)], HIGH_DEG[list(ANGLES_IN_POSE)]
 _MIDDLES: Final = np.array([sum(LIMITS_DEG.get(name, (0.0, 0.0))) / 2 for name in ANGLE_NAMES])
@@ -66,8 +66,8 @@ def held(pose: Vector, before: Vector) -> Floats:
     """The pose with every limb within the limits of its joints, (25,).
 
     A direction has two pairs of theta_X and theta_Z. Each is brought as near to it as the limits
-    allow, and the likelier one is taken: an arm that seems to hang a little inwards hangs straight,
-    and is not raised over the head to come down on that side.
+    allow, and the likelier one is taken. So an arm that seems to hang a little inwards becomes a
+    straight one, not one that passes over the head.
 
     Args:
         pose: From `pose_of`.

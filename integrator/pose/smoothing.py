@@ -13,8 +13,8 @@ from common.body.body import Vector
 class Smoothing(NamedTuple):
     """Noise parameters of the filter.
 
-    With 3 to 6 degrees of white noise on the true angles of two performers these have the least
-    error, or are within 6 % of it, at the recorded pace and at twice that pace.
+    Chosen with 3 to 6 degrees of white noise on the true angles of two performers, at the recorded
+    pace and at twice that pace. The error is the least there, or within 6 % of it.
     """
 
     noise_deg: float = 6.0

@@ -24,7 +24,7 @@ FACED, STANDS, KNOWN = 3 * JOINTS, 3 * JOINTS + 3, 3 * JOINTS + 8
 """Layout of one view's input after joints and confidences: start of the facing, start of the
 camera's place, end."""
 INPUTS: Final = 2 * KNOWN + 2
-"""Number of further inputs: both views, the time since the input before, and whether both see."""
+"""Number of inputs: those of both views, the time since the input before, and whether both see."""
 MIDDLE: Final = [JOINT_NAMES.index(name) for name in ("l_shoulder", "r_shoulder", "l_hip", "r_hip")]
 ANKLES: Final = [JOINT_NAMES.index(name) for name in ("l_ankle", "r_ankle")]
 PELVIS, NECK = JOINT_NAMES.index("pelvis"), JOINT_NAMES.index("neck")
@@ -45,7 +45,8 @@ ASLANT: Final = 0.05
 BEYOND: Final = 1.2
 """Largest distance of a joint from the middle, statures."""
 LEANS: Final = 3.0**0.5
-"""Lean in a picture, degrees, beyond which a facing refers to the trunk and is not used here."""
+"""Tangent of the angle from the horizontal at which a trunk leans by 30 degrees; a facing of one
+that leans farther refers to the trunk and is not used here."""
 
 
 class Shown(NamedTuple):

@@ -41,10 +41,9 @@ JOINTS_OFF: Final = np.array(
 )
 """(12, 3) the same offset, to the left, up and forwards."""
 RISE: Final = (0.055, 0.080)
-"""Height of the shoulders above the cylinders' when both upper arms are level, and what is added
-when they point straight up (subtracted: straight down), in lengths from pelvis to neck: robust
-least squares on the true necks of two performers, whose spines keep their lengths
-(docs/measurements.md)."""
+"""Height of the shoulders above the cylinders' with level upper arms, and its gain when both
+point straight up (its loss: straight down), in lengths from pelvis to neck. Robust least squares
+on the true necks of two performers, whose spines keep their lengths (docs/measurements.md)."""
 PLATT: Final = (0.99, -0.64)
 """Platt scaling of the network's confidence, learnt on synthetic people: slope and offset of the
 logit; the target is a joint less than 50 mm off. Fitted to two performers and new synthetic people
@@ -60,19 +59,19 @@ data contain no larger lean."""
 HARDLY: Final = 0.01
 """Doubt added to each joint's odds where two proposals are joined."""
 BELIEVED: Final = 3.0
-"""Factor on the odds of the lifted depths beside those of the silhouettes: of two performers 98 %
-of the depths' signs are right at 2, 99 % at 3 and 4, and the joints' error is the same at 2 to 4
+"""Factor on the odds of the lifted depths beside those of the silhouettes. For two performers 98
+% of the depths' signs are right at 2, 99 % at 3 and 4; the joints' error is equal at 2 to 4
 (docs/measurements.md)."""
 
 BELIEVED_AFTER_S: Final = 8.0
-"""Seconds of one view alone, after two, from which what is lifted counts in full; from 0 on it
-counts ever more: the network of silhouettes remembers what both views showed, that of landmarks was
-trained on no such change. The best of 2, 4 and 8 (docs/measurements.md)."""
+"""Seconds after the loss of one of two views over which the weight of lifted joints grows to 1.
+The silhouette network remembers both views; the landmark network was not trained on such a
+change. The best of 2, 4 and 8 (docs/measurements.md)."""
 
 PLACED: Final = 0.5
-"""Share of the way from the hips of the silhouette alone to the lifted hips at which they are
-placed: the best of 0, .35, .5 and .65 in sum over two performers and eight synthetic people who
-fall, each camera alone (docs/measurements.md)."""
+"""Place of the hips between those of the silhouette alone (0) and the lifted ones (1). The best
+of 0, .35, .5 and .65 in sum over two performers and eight synthetic people who fall, each camera
+alone (docs/measurements.md)."""
 
 
 class Memory(NamedTuple):

@@ -42,7 +42,7 @@ ALONG: Final = 1e-3
 NEARNESS: Final = 4.0
 """Factor that brings stature over distance to about one."""
 NEAR_M, FAR_M = 1.0, 12.0
-"""Assumed distance of a person from a single camera, metres."""
+"""Range of distances, metres, in which a single camera looks for a person."""
 
 
 class Look(NamedTuple):
@@ -129,7 +129,7 @@ def _about(
     masks: tuple[Mask | None, Mask | None], rig: Rig, middle_m: Vector, up: Vector
 ) -> Vector:
     """Axes like those of `axes_of` for a person who leans far: y to the head, z towards camera
-    1; where camera 2 is alone it has the place of the paper's, to the left."""
+    1. Where camera 2 is alone, it is placed to the left, as the paper's."""
     first, second = (_across(_away(camera, middle_m), up) for camera in rig.cameras)
     if masks[0] is None:
         return np.stack([-second, up, np.cross(-second, up)])

@@ -158,8 +158,8 @@ def _at_depth(camera: Camera, pixel: Pixel, before_m: Vector) -> Vector:
 
 
 def facing_of(rig: Rig, pose: Vector) -> tuple[Facing, ...]:
-    """The facing in each view of a known pose: how frontal the trunk is to each camera is
-    compared with the mean of the most and the least frontal view; above it a view is the facade."""
+    """The facing in each view of a known pose. Each view is compared with the mean of the most
+    and the least frontal one: a more frontal view sees the facade."""
     yaw = math.radians(pose[POSE_INDEX["torso_y"]])
     shares = []
     for camera in rig.cameras:

@@ -16,7 +16,7 @@ from common.rig.camera import Camera, Rig, as_matrix, as_row
 from integrator.rig.assumed_rig import FOCAL_SHARE
 
 TILTS_DEG: Final = np.arange(-20.0, 51.0)
-"""Downward tilts that are tried, radians."""
+"""Downward tilts that are tried, degrees."""
 LEVEL: Final = np.zeros(1)
 HEIGHTS_M: Final = np.geomspace(0.25, 5.0, 76)
 """Heights of the camera above the floor that are tried, metres."""
@@ -36,7 +36,7 @@ USUAL_M: Final = (0.8, 2.5)
 UNUSUAL: Final = 0.25
 """Relative standard deviation of the height outside that range."""
 MOST_SIGHTS: Final = 300
-"""Fewest observations."""
+"""Largest number of observations that are used."""
 FARTHEST_M: Final = 12.0
 """Largest distance of a person, metres."""
 LOWEST_M: Final = 1e-3

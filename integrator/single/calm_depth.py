@@ -16,7 +16,8 @@ OWN_M: Final = 0.006
 SMOOTH_S: Final = 0.13
 """Time constant by which lines of sight are smoothed, to see whether they move."""
 TREMOR_M_S: Final = 0.04
-"""Angular speed that smoothed lines of sight show at the joints of a person who stands still."""
+"""Apparent speed of smoothed lines of sight, metres per second at the joints, for a person who
+stands still."""
 DEEPER: Final = 24.0
 """Ratio of the speed along the line of sight that is allowed, for a joint or the body, to its
 speed across: a person who walks towards the camera hardly moves across. With a smaller ratio
@@ -47,9 +48,9 @@ def step(
     """One instant: joints moved along their lines of sight to their most probable distances.
 
     A picture shows the directions of joints. Their distances are proposed anew at each instant, and
-    tremble, the whole body's by a centimetre, while a person stands still. A joint that does not
-    move in the picture hardly comes nearer: a distance may change by the motion of its joint, or
-    the mean motion of all, across the line of sight, times DEEPER. A larger deviation is believed
+    tremble while a person stands still, the whole body's by a centimetre. A joint that does not
+    move in the picture hardly comes nearer. So a distance may change by DEEPER times the motion
+    across the line of sight, of its joint or of all on average. A larger deviation is believed
     nevertheless: an arm may be stretched straight towards the camera.
 
     Args:

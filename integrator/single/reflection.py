@@ -22,8 +22,8 @@ ANEW_HZ, ANEW_ASIDE_HZ = 0.05, 5.0
 for one seen from the side, as people turn through their side."""
 SHOWN_HZ: Final = 9.0
 """Number of independent observations per second of pictures. Of synthetic people in free motion
-4.9 % of the proposals have front for back; this value leaves 3.0 %, a sixth of it 2.8 and half
-of it 3.1: recorded people wear clothes that the training data lack."""
+4.9 % of the proposals have front for back. This value leaves 3.0 %, a sixth of it 2.8 and half
+of it 3.1. It is not smaller because recorded people wear clothes that the training data lack."""
 CERTAIN: Final = 20.0
 """Bound of the log odds from any stretch of time."""
 PROPOSED_HZ: Final = 1.0

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from common.body.body import JOINT_NAMES, Vector
 
 DEPTH_TIMES: Final = 2.0
-"""Ratio of a joint's uncertainty along the line of sight to that across it: of 1, 2 and 4 it has
-the least error in the world on two performers; in the picture all improve
+"""Ratio of a joint's uncertainty along the line of sight to that across it. Of 1, 2 and 4 this
+one has the least error in the world on two performers; in the picture all improve
 (docs/measurements.md)."""
 HALVINGS: Final = 40
 LEAST: Final = 1e-6

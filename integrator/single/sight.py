@@ -65,7 +65,7 @@ class Sight(NamedTuple):
 
     @property
     def stature_m(self) -> float:
-        """Silhouette of the person."""
+        """Stature of the person."""
         return stature(self.bdp)
 
 

@@ -46,9 +46,9 @@ class Compared(NamedTuple):
     rows: NDArray[np.int64]
     """(n,) rows of the ground truth."""
     tracked_m: Vector
-    """(n, 12, 3) world, true."""
-    true_m: Vector
     """(n, 12, 3) world, tracked."""
+    true_m: Vector
+    """(n, 12, 3) world, true."""
     confidence: Vector
     """(n, 12) confidence in [0, 1]."""
     due: int

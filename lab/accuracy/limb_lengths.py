@@ -52,9 +52,9 @@ def body_joints_m(bdp: Bdp) -> Vector:
 def length_errors(clips: Sequence[Compared], bodies: Sequence[Bdp | None]) -> Facts:
     """Mean error of every segment, mm: of the measured body, of joints, of their medians.
 
-    The true length of a body's segment is its median over the clip; published joints are compared
-    with the true ones of the same frame, their medians over a clip with the true medians. `off` is
-    the mean absolute error, `bias` the mean error.
+    The true length of a body's segment is its median over the clip. Published joints are compared
+    with the true ones of the same frame, and their medians over a clip with the true medians. `off`
+    is the mean absolute error, `bias` the mean error.
 
     Args:
         clips: The tracked clips.

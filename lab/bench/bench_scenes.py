@@ -25,7 +25,7 @@ MATCHES: Final = 9
 SWAY_DEG: Final = 12.0
 """Standard deviation of every angle around the rest: that of a walking person."""
 RING: Final = np.linspace(0.0, 2.0 * np.pi, 48, endpoint=False)
-"""Number of points of a disc's contour for OpenCV."""
+"""Angles of the points on a disc's contour, for OpenCV."""
 
 
 class Scene(NamedTuple):

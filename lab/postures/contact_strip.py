@@ -23,9 +23,10 @@ from viewer.captured_frame import CapturedFrame
 SHOWN: Final = 8
 """Number of frames: enough for a motion of two or three seconds."""
 WIDTH_PX: Final = 160
-"""Height of each frame, pixels."""
+"""Width of each frame, pixels."""
 LEVELS: Final = 0xF0
-"""Bits of a colour that are kept: with their noise a page of strips would have 12 MB."""
+"""Mask of the bits of a colour that are kept: with their noise a page of strips would have 12
+MB."""
 
 Instant = tuple[dict[ViewerNumber, CapturedFrame], dict[int, View], Body]
 """Frames, reports and body of one instant."""

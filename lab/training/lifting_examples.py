@@ -39,14 +39,15 @@ GAP_SHARE, GAP = 0.15, (5, 40)
 """For two cameras: share of performances in which one of them loses the person, and for how many
 instants."""
 BELIEVED, UNMEASURED, UNMEASURED_SHARE = 0.02, 0.05, 0.3
-"""Relative deviation of a stature, for a measured and for an unmeasured person."""
+"""Relative deviation of a stature, of a measured and of an unmeasured person, and the share of
+the unmeasured."""
 FOCAL_WRONG, PITCH_WRONG_DEG = (0.01, 0.12), (0.3, 3.0)
 """Deviations of a camera's parameters: calibrated, and assumed."""
 GUESSED_SHARE: Final = 0.25
 """Share of single cameras that are assumed."""
 NEAREST_M: Final = 0.6
 ASTRAY_M: Final = 1.5
-"""Distance of the middle, statures, beyond which an example is dropped."""
+"""Error of the middle, metres, beyond which an example is dropped."""
 INSTANT_S: Final = 1.0 / FPS
 
 

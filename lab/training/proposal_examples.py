@@ -17,7 +17,7 @@ BELIEVED: Final = (1.008, 0.02, 0.05)
 deviation for an unmeasured one."""
 UNMEASURED_SHARE: Final = 0.15
 ASTRAY_M: Final = 1.5
-"""Distance of a silhouette from the person, beyond which an example is dropped."""
+"""Distance of a silhouette from the person, metres, beyond which an example is dropped."""
 PICK: Final = [ALL_JOINTS.index(name) for name in JOINTS]
 
 

@@ -20,7 +20,7 @@ from runtime.store.cores import spread
 from runtime.terminal import warn
 
 SHIPPED_MODELS: Final[dict[Recognizer, Path]] = {"default": SHIPPED, "paper": SHIPPED_PAPER}
-"""Name of the packaged model on a command line."""
+"""The packaged models that a command line calls `shipped`, by kind."""
 
 
 class TrainingError(ValueError):

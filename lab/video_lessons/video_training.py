@@ -36,7 +36,7 @@ from viewer.landmarks.landmark_looks import SHIPPED
 FIRST: Final = 30_000_000
 """Seed of the first synthetic person: outside the packaged network's training data."""
 VIDEO_SHARE: Final = 0.5
-"""Number of each kind of example in a batch."""
+"""Share of the videos' examples in each batch."""
 RATE, WARM, MEAN_OVER, KEEP_EVERY = 1e-3, 20, 50, 50
 """As in `landmark_training`: the network is trained already."""
 FAR: Final = 0.3

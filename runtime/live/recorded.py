@@ -72,7 +72,7 @@ class SoFar:
     def __init__(self, bodies: Iterable[Body] = (), postures: Iterable[Posture] = ()) -> None:
         """From these bodies, and from later ones."""
         self.moves: Moves = ()
-        """By camera name."""
+        """The moves of cameras so far."""
         self.posture = ""
         """For a whole clip: the last name given, by a window that saw most of it."""
         self.instants = 0

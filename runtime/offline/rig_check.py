@@ -17,7 +17,7 @@ MOST_LATE_FRAMES: Final = 0.75
 DOUBTED: Final = 0.05
 """Factor on the confidence of bodies from views whose times do not match."""
 MOST_FRAMES: Final = 3_000
-"""Seconds of a run that are kept."""
+"""Number of a run's latest frames that are kept."""
 
 
 class Seen(NamedTuple):

@@ -23,7 +23,7 @@ from viewer.landmarks.landmark_sources import Sources
 ON_TIME: Final = Clock(0.0)
 """The clock of view 2 where the user gives its delay: it is on time after that."""
 MOST_FRAMES: Final = 3_000
-"""Seconds of a clip that are used."""
+"""Number of a clip's first frames that are used."""
 
 
 class Looked(NamedTuple):

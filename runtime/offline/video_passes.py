@@ -47,7 +47,7 @@ CUTTING, POSING = "silhouettes", "poses"
 """Names of the passes, for resuming."""
 REPORTS, CALM = "reports", "calm"
 MOST_COVERED: Final = 0.5
-"""Smallest share of the picture without a person in most frames; a moving camera gives less."""
+"""Largest share of the picture that a person covers in most frames; a moving camera exceeds it."""
 
 
 class VideoFacts(NamedTuple):

@@ -20,9 +20,10 @@ from runtime.unfinished.work import Kept
 NOISE_M: Final = 0.05
 """Standard deviation of a joint in a single view."""
 ACCELERATION_M_S2: Final = 40.0
-"""Standard deviation of a joint's acceleration between two frames. Of 20, 30, 40 and 60 joints
-err least with 20 at their own pace and with 60 at twice that; with 40 within 1 % of both: two
-performers and six synthetic people in free motion, by `steadied` (docs/measurements.md)."""
+"""Standard deviation of a joint's acceleration between two frames. Of 20, 30, 40 and 60 the
+errors are least with 20 at the recorded pace, with 60 at twice that pace; 40 is within 1 % of
+both. Two performers and six synthetic people in free motion, by `steadied`
+(docs/measurements.md)."""
 START_SPEED_M_S: Final = 2.0
 """Standard deviation of the speed at the first frame: a limb may be moving already."""
 ROUNDS: Final = 3

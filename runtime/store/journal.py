@@ -28,9 +28,9 @@ NAME: Final = "journal.bin"
 BEFORE: Final = "journal.{:06d}.bin"
 """Names of the parts before the newest."""
 MOST_BYTES: Final = 1 << 27
-"""First bytes of each part."""
+"""Largest size of each part, bytes."""
 MOST_BODIES: Final = 54_000
-"""Records of each part: an hour at 15 Hz."""
+"""Largest number of bodies in each part: an hour at 15 Hz."""
 MOST_PARTS: Final = 12
 """Number of older parts: half a day at 15 Hz; beyond, the oldest is removed."""
 ROW_BYTES: Final = 2_000

@@ -9,9 +9,9 @@ from common.npz_file import Facts
 from runtime.store.runs import RunError
 
 RUN_OF: Final = "run_of"
-"""The summary's keys for a run's command and source."""
+"""The summary's key for a run's command and source."""
 OF_CAMERAS: Final = "processes"
-"""Keys that only a live run's summary has."""
+"""A key that only a live run's summary has."""
 
 
 class OtherRun(RunError):

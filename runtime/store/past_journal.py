@@ -20,7 +20,7 @@ from runtime.store.older_messages import read_head, read_message
 Kind = TypeVar("Kind", bound=Message)
 
 LOG: Final = "log.txt"
-"""Where the processes of a run write their log, beside its journal."""
+"""Name of the file with the processes' log, beside the journal."""
 _MARKS: Final = {kind: mark for mark, kind in KINDS.items()}
 
 

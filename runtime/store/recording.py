@@ -37,7 +37,7 @@ from runtime.store.runs import RunError, unwritable, versions
 
 NAME: Final = "recording.mcap"
 TORN: Final = ".recording.*.mcap"
-"""Suffix of an incomplete recording in the folder of a run that was killed."""
+"""Pattern of the names of incomplete recordings in the folder of a run that was killed."""
 CHUNK_BYTES: Final = 1 << 17
 """Bytes written at once, half a second to two of a run: at most that is lost when it is killed."""
 KINDS: Final[dict[str, type[Message]]] = {

@@ -32,7 +32,7 @@ CLOTH_M: Final = 0.003
 FLARE_M: Final = (-0.01, 0.035)
 """Additional width of trousers at the ankle, beyond the leg and their looseness."""
 FOLD_SHARE: Final = 0.3
-"""Standard deviation of the cloth's distance over the surface."""
+"""Relative change of the cloth's distance over the surface."""
 HANGS_M: Final = 0.03
 """Length of a shirt below the hips from which on it hangs in front of and between the thighs."""
 COAT_M: Final = 0.12

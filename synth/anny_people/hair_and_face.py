@@ -12,7 +12,7 @@ from synth.person.people import Hair
 from synth.person.rings import MATERIAL
 
 LOWEST: Final[dict[Hair, float]] = {"short": 0.42, "bob": -0.1, "tail": 0.36}
-"""Height of the hair's lower edge behind, between the base of the neck and the crown."""
+"""Height of the hair's lower edge behind, by haircut: 0 at the base of the neck, 1 at the crown."""
 BROW: Final = (0.8, 0.9)
 """Range of the height of its edge above the forehead."""
 EDGE_AHEAD: Final = (0.0, 0.42, 0.56, 0.74, 1.0)
@@ -20,7 +20,7 @@ EDGE_AHEAD: Final = (0.0, 0.42, 0.56, 0.74, 1.0)
 PUFF_M: Final = (0.004, 0.03)
 """Distance of hair from the head."""
 LOCKS: Final = 0.3
-"""Standard deviation of that over the surface."""
+"""Relative change of that over the surface."""
 THICK_M: Final = 0.015
 """Additional distance around the neck."""
 LONG_M: Final = 0.16

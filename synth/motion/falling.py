@@ -28,7 +28,7 @@ CARRIES: Final = [
 ]
 """Joints that a body lies on; arms yield."""
 _TURN: Final = ANGLES.index("root_yaw")
-"""Angle by which a lying person rolls over."""
+"""Index of the angle by which a lying person rolls over."""
 
 
 def lain(

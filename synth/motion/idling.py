@@ -15,7 +15,7 @@ HEADING_SHARE: Final = 0.25
 """Factor on the turns of free motion: between two postures people keep roughly their heading."""
 
 RETURNS: Final = ("walk_sideways", "walk_toward", "walk_slow_bigswing")
-"""Postures after which the person steps back to their place."""
+"""Postures that lead away: afterwards the person steps back to their place."""
 
 
 def standing(_t: Vector, _style: Style, _still: Track) -> Track:

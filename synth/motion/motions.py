@@ -22,9 +22,9 @@ EMPTY, TPOSE, LOWERING, MOTION = 0, 1, 2, 3
 OPENING_S: Final = (9 / 15, 14 / 15, 6 / 15)
 """Durations of the empty room, of the T pose, and of lowering the arms."""
 RAMP_S: Final = 0.25
-"""Durations in which a repeated movement begins and ends."""
+"""Time in which a repeated movement begins, and ends."""
 LASTS_S: Final = {"free": FREE_S, "fall": FALL_S}
-"""Motions that are no posture, and their durations."""
+"""Duration of the motions that are no posture."""
 SWAY_HZ: Final = (0.35, 0.6, 1.1)
 """Frequencies of the involuntary sway."""
 SWAY_SHARE: Final = {

@@ -19,7 +19,7 @@ SLEEVES: Final[tuple[Sleeve, ...]] = ("none", "short", "short", "long", "long")
 HAIRS: Final[tuple[Hair, ...]] = ("bald", "short", "short", "bob", "tail")
 SKINS: Final = ((190, 205, 240), (36, 52, 82))
 HAIR: Final = ((90, 150, 190), (12, 14, 18))
-"""The lightest and the darkest skin, blue, green, red."""
+"""The lightest and the darkest hair, blue, green, red."""
 DYED_SHARE, BARE_SHARE = 0.1, 0.12
 """Shares of the people with hair of any colour, and without shoes."""
 

@@ -12,7 +12,7 @@ from synth.motion.motions import Motion
 BLUR_M: Final = 0.06
 """Displacement of a joint per frame from which on the picture is blurred."""
 FLICKER_HZ: Final = (1.3, 3.1)
-"""Remaining amplitude of the lamp's flicker at the cameras' rate."""
+"""Frequencies of the lamp's flicker that remain at the cameras' rate."""
 
 
 def default_rig(width: int, height: int) -> Rig:

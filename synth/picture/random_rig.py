@@ -13,27 +13,28 @@ from synth.picture.exposure import default_rig
 
 WIDTHS_PX: Final = (160, 320)
 HEIGHTS_M, FOCALS = (0.8, 1.4), (1.0, 1.4)
-"""Ranges of height, distance and focal length; focal lengths in picture widths at 4.5 m."""
+"""Ranges of the heights, and of the focal lengths in picture widths at 4.5 m."""
 APART_DEG, RISE_M, ROLL_DEG = (50.0, 130.0), (0.5, 2.6), 6.0
-"""Ranges for cameras that stand anywhere."""
+"""Angle between cameras that stand anywhere, their height, and the deviation of their roll."""
 FRONT_SHARE, ASIDE_SHARE, ABOUT_DEG = 0.3, 0.25, 15.0
 """Shares of first cameras that stand about before the person, and beside them; the deviation of
 these."""
 HEIGHTS_PX: Final = (240, 240, 180, 427)
-"""Focal length of pictures 320 wide."""
+"""Heights of the pictures, which are 320 wide."""
 LEVEL_SHARE, LEVEL_M, HUNG_M, ROLLED_SHARE, ROLLED_DEG = 0.6, (0.7, 1.5), (0.3, 3.2), 0.3, 4.0
 DISTANCES_M, WIDTHS, AT_M = (2.2, 5.8), (0.85, 1.4), 4.5
 """Ranges of distances, and focal lengths in widths, as HOW_FAR times those for a nearer or
 farther person."""
 HOW_FAR: Final = (0.75, 1.3)
 CROSS_DEG, CROSSED_SHARE, RIGHT_SHARE = (45.0, 135.0), 0.5, 0.3
-"""Angle to the second camera, where it is not 90; share of those to the right."""
+"""Range of the angle to the second camera where it is not 90, the share of such rigs, and the
+share of second cameras on the right."""
 FURTHER_DEG: Final = (135.0, 60.0, -150.0, -30.0, 100.0, 165.0)
 """Bearings of camera 3 and on; the default rig's are 0, before the person, and -90, at their
 right. Any first few of them are evenly spread. No two stand opposite each other, where rays
 coincide."""
 MOST_CAMERAS: Final = 2 + len(FURTHER_DEG)
-"""Ranges for a rig around a person."""
+"""Largest number of cameras of a rig around a person."""
 FURTHER_OFF_DEG, FURTHER_FAR_M, FURTHER_HIGH_M = 5.0, (4.5, 5.0), (0.8, 2.2)
 """Deviations of their bearings; ranges of distance and height."""
 FURTHER_AIM_M, FURTHER_FOCALS, FURTHER_ROLL_DEG = (0.9, 1.05), (0.92, 1.0), 1.0

@@ -21,7 +21,7 @@ from synth.picture.raster import cover, draw, expose, gather, shade, skin
 from synth.picture.synth_room import LIGHT_MAP_PX, Lamp, Room, furnished, lamp_pixels, lit_from
 
 FINE_PX: Final = 480
-"""Samples across a picture: smaller pictures average more samples per pixel."""
+"""Number of samples across a picture: smaller pictures average more samples per pixel."""
 SHUTTER: Final = 0.4
 """Open time of the shutter, over the frame period."""
 NOISE: Final = 1.7

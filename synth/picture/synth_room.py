@@ -14,7 +14,7 @@ from synth.picture.textures import Finish, finish, painted
 Picture = NDArray[np.float32]
 
 LIGHT_MAP_PX: Final = 128
-"""Size of a lamp's picture of the person: 4 cm per pixel, as shadows are soft anyway."""
+"""Side of a lamp's picture of the person: 4 cm per pixel, as shadows are soft anyway."""
 LIGHT_REACH_M: Final = 2.3
 """Extent of the lamps' pictures around the middle of the room."""
 MIDDLE_M: Final = (0.0, 0.9, 0.0)
@@ -30,9 +30,9 @@ LAMP_SPREAD_M: Final = 0.25
 BEHIND_M: Final = 0.6
 """Depth of the room behind each camera."""
 FURNISHED_M: Final = (-1.9, 1.7)
-"""Range of the first object's place along a wall."""
+"""Range along the walls behind the person in which objects stand."""
 WIDEST_M: Final = 0.9
-"""Range of an object's width along a wall."""
+"""Largest width of an object along a wall."""
 SAMPLES: Final = 2
 """Rays per pixel, each way."""
 

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from lab.training.training import Plan
 
 LEARN: Final = ("learn", "sklearn")
-"""Name of the extra for training, and its packages."""
+"""The extra for training, and a module that it installs."""
 RecognizerName = Annotated[
     Literal["default", "paper"], typer.Option(help=f"Which models. {MODES}.")
 ]

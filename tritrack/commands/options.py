@@ -130,7 +130,7 @@ OwnMode = Annotated[
     typer.Option(help="How clips are tracked, if not in the recogniser's own mode."),
 ]
 CACHE: Final = Path("runs/.tracked")
-"""Hidden folder in `runs/`: the pattern `runs/*/` then matches runs alone."""
+"""Default folder of cached results, hidden so that `runs/*/` matches runs alone."""
 Cache = Annotated[
     Path,
     typer.Option(

@@ -25,7 +25,7 @@ HINTS: Final = {
 }
 KINDS: Final[tuple[Kind, ...]] = ("floor", "wall")
 START: Final[tuple[Kind, ...]] = ("floor",) * 4 + ("wall",) * 4
-"""Points per marker: with three an outlier cannot be identified."""
+"""Marks of a new sheet, four points per marker: with three an outlier cannot be identified."""
 NOMINAL_M: Final = 4.0
 """Distance at which cameras are drawn from above, metres: markers do not determine it."""
 DRAWN_DEG: Final = 40.0

@@ -22,8 +22,8 @@ from common.video.pictures import Decoded, DecoderDied, Image, Size, Source, Wan
 from runtime.terminal import bar
 
 MOST_STILLS: Final = 100
-"""Stills of each video, evenly spaced: markers do not move, and a pole that is carried about
-rests."""
+"""Largest number of stills of each video, evenly spaced: markers do not move, and a pole that is
+carried about rests."""
 BOUND: Final = (1920, 1080)
 """Bound of the pictures' size, pixels; points are in these pixels."""
 JPEG_QUALITY: Final = 92

@@ -27,7 +27,7 @@ NAMES: Final = (
 )
 """The written files; each is optional."""
 FLAG: Final = (0, 0, 255)
-"""Hatching of pixels that were never uncovered."""
+"""Colour of the hatching over pixels that were never uncovered."""
 
 
 def write_files(folder: Path, arrays: Arrays, background: Background | None) -> list[str]:

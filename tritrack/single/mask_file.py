@@ -11,7 +11,7 @@ from common.bus.messages import View
 from common.raster.silhouette_report import silhouette_view
 
 MAX_PIXELS: Final = 1 << 30
-"""Upper bound of a sequence, bytes: 50,000 frames at 160x120."""
+"""Largest number of pixels of a sequence: 50,000 frames at 160x120."""
 RATE_HZ: Final = 25.0
 """Frame rate of mask files, which record none; the databases were recorded for television."""
 SHAPE: Final = "__shape"

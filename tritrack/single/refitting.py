@@ -29,7 +29,7 @@ HEARD_S: Final = 0.2
 END_S: Final = 5.0
 """Time for a process to end when asked, seconds; then it is killed."""
 STEP: Final = 0.05
-"""Progress reports per pass."""
+"""Share of a pass between two progress reports."""
 SPAWN: Final = multiprocessing.get_context("spawn")
 
 

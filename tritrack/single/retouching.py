@@ -39,9 +39,9 @@ if TYPE_CHECKING:
     from animator.retouching.retouch import RetouchPage
 
 MOST_PICTURES: Final = 20_000
-"""Pictures in memory, some 40 kB each."""
+"""Largest number of pictures in memory, some 40 kB each."""
 SHOWN: Final = (640, 480)
-"""Largest width of a picture on the page, pixels."""
+"""Largest size of a picture on the page, pixels."""
 JPEG_QUALITY: Final = 88
 
 

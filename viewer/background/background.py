@@ -126,8 +126,8 @@ def overlaid_opening(frames: Sequence[Image]) -> Overlaid:
 def light_gain(frame: Image, background: Floats) -> Floats:
     """Light of a frame relative to the background, per channel, with or without a person in it.
 
-    The median of the ratio over a grid of pixels, then the mean of the ratios around it, so that
-    neither a person nor a shadow on less than half of the picture counts.
+    The median of the ratio over a grid of pixels, then the mean of the ratios around it. So a
+    person or a shadow on less than half of the picture does not count.
 
     Args:
         frame: (H, W, 3).

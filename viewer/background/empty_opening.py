@@ -26,8 +26,9 @@ def is_still(opening: Overlaid) -> bool:
 def is_empty_opening(opening: Overlaid, sample: Iterable[Image]) -> bool:
     """Whether the opening frames show the background without a person.
 
-    A difference between the opening and a later frame has its contour in the picture that holds the
-    person: in the later one alone if the opening is empty, in both if a person stood there.
+    A difference between the opening and a later frame has its contour in every picture that holds
+    the person. If the opening is empty that is the later one alone; if a person stood there it is
+    both.
 
     Args:
         opening: The first frames of a clip.

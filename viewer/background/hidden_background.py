@@ -14,7 +14,7 @@ from viewer.background.image_stack import CHANGES, LUMA, Floats, median
 from viewer.background.occluded_background import SHOWN, bridged, estimated_of
 
 BESIDE: Final = np.ones((3, 3), np.uint8)
-"""Margin around a body, pixels: what lies beside it has some of its colour, and is filled in
+"""Dilation of a body's mask: what lies beside the body has some of its colour, and is filled in
 too."""
 DARK, BRIGHT = np.float32(0), np.float32(255)
 

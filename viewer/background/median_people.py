@@ -15,14 +15,15 @@ NOISES: Final = 4.0
 """Spreads of a pixel's own flicker that a change must exceed in addition to CHANGES."""
 MOST_FLICKER: Final = 2 * CHANGES
 QUIET: Final = 0.25
-"""Share of the frames whose range defines a pixel's flicker."""
+"""Share of the frames in which a pixel's deviation defines its flicker."""
 ROAMS: Final = 0.55
-"""Sideways motion of a region's middle, over the height of the region, from which a person
-leaves every pixel for most of the clip: 0.5 to 2.0 for a person who crosses a picture, up to 0.5
-on the spot."""
+"""Sideways motion of a region's middle, over its height, above which a person uncovers every
+pixel for most of the clip. It is 0.5 to 2.0 for a person who crosses a picture, up to 0.5 on the
+spot."""
 RARELY: Final = 0.1
-"""Share of the frames that must differ where a roaming person stands in the median picture. What
-differs less often is background that arms pass in front of, whose own edges look like contours."""
+"""Share of the frames that must differ at a place where a roaming person stands in the median
+picture. A smaller share means background in front of which arms pass; its own edges look like
+contours."""
 LEAST_BLOB: Final = 0.2
 """Share of the largest change at a place below which a frame does not show where the middle is."""
 AROUND: Final = 0.25

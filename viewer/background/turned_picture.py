@@ -19,7 +19,7 @@ ROUNDS: Final = 8
 EDGE_PX: Final = 0.35
 """Tolerance of an edge's place after the rotation, pixels."""
 SOBEL: Final = 8.0
-"""Fixed-point unit of a slope of 1 per pixel."""
+"""Value of Sobel's operator for a slope of 1 per pixel."""
 
 Places = NDArray[np.float64]
 

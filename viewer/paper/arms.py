@@ -14,10 +14,10 @@ BEND_MOST_DEG: Final = 140.0
 """Largest bend of an elbow, degrees (section 3.3, step 2)."""
 
 HIDDEN: Final = 0.004
-"""Smallest gain in S for which an arm moves in the flank view, five pixels of a body of 2000: an
+"""Smallest gain in S for which an arm moves in the flank view: five pixels of a body of 2000. An
 arm hidden by the trunk or the other arm stays where it was."""
 ANY_GAIN: Final = -1.0
-"""As printed, the best angle of a search is taken for any gain."""
+"""Gain in S below any possible one: as printed, the best angle of a search is always taken."""
 
 _SHOULDER_Z = [turn(ARM_LIMBS[i], **{f"{side}_shoulder_z": 1.0}) for i, side in enumerate(SIDES)]
 _SHOULDER_X = [turn(ARM_LIMBS[i], **{f"{side}_shoulder_x": 1.0}) for i, side in enumerate(SIDES)]

@@ -12,7 +12,7 @@ from common.raster.kernel import CENTRE_X, CENTRE_Y, draw_limbs, score
 from viewer.paper.posed_model import PosedModel
 
 SHIFTS_PX: Final = (0, -1, 1, -2, 2, -5, 5)
-"""The printed candidates and the present place, the smallest first: ties stay (P27)."""
+"""The printed candidates and 0, the present place, the smallest first: ties stay (P27)."""
 
 UPRIGHT: Final = 0b111111
 """Limbs drawn: trunk, head and legs. The arms still have the angles of the frame before, and

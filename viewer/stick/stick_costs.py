@@ -22,16 +22,16 @@ from common.compiled import compiled
 ) = range(10)
 
 COSTS: Final = np.array([0.006, 0.06, 0.02, 0.02, 0.2, 10.0, 0.01, 0.012, 1.0, 0.5])
-"""Weights of these costs, in S: for a limb to swing by 60 degrees (a change of 1 in its vector)
-since its prediction; for trunk, legs and arms to leave the plane of the picture; for breadth and
-for stature to change by all they are; for the trunk to lean by 90 degrees; for an elbow to bend
-in the plane by 90, or a knee where the trunk shows its breadth; for a knee or foot seen from the
-front to cross to the other side by a stature. Chosen on two performers, each halved and doubled
+"""Weights of these costs, in S. A limb's swing: per change of 1 in its direction vector since
+the prediction (60 degrees). Depth: trunk, legs or arms out of the plane of the picture. Change
+of breadth and of stature: by all they are. Lean of the trunk: 90 degrees. Bends: an elbow by 90
+degrees in the plane, a knee where the trunk shows its breadth. Crossing: a knee or foot seen
+from the front on the other side, by a stature. Chosen on two performers, each halved and doubled
 (docs/measurements.md)."""
 
 TILTED: Final = 0.15
-"""1 - ratio^2 at which a limb's leaving the plane has half its full cost (23 degrees): what
-cannot be seen stays in the plane, what can be seen is free to turn further."""
+"""1 - ratio^2 at which a limb out of the plane has half its full cost (23 degrees). So invisible
+depth stays 0, while a visible depth may grow."""
 
 STIFF_NECK: Final = 3.0
 """Cost of a neck's bend in the plane, over an elbow's."""

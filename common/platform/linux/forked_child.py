@@ -55,8 +55,9 @@ class ForkedChild:
 def can_fork() -> bool:
     """Whether this process was forked of one that forks others too, and may have children.
 
-    A process without a fork server of its own would start one, because multiprocessing looks for no
-    other: the server that forked it serves as well, and a new one would end this process with it.
+    multiprocessing looks only for a fork server that the process itself began. Without one it would
+    start another, which would end this process with it; but the server that forked this process
+    serves as well.
     """
     if forkserver.get_inherited_fds() is None or multiprocessing.current_process().daemon:
         return False
