@@ -9,7 +9,7 @@ from viewer.captured_frame import CapturedFrame
 LATE: Final = 0.15
 """Delay, in frame periods, up to which a viewer keeps its landmarks."""
 LASTS_S: Final = 1.0 / 3.0
-"""Duration of load shedding once begun, seconds: five frames at 15 Hz; at most that many frames
+"""Duration of load shedding once begun, seconds: five frames at 15 Hz. At most that many frames
 in a row go without landmarks."""
 TOLD: Final = 0.02
 """Share of a run's frames that may go without landmarks before it is reported."""

@@ -18,7 +18,7 @@ PAPER_ROTATIONS: Final = (
 )
 """World to camera for camera 1 (looks along -z) and camera 2 (looks along +x) (C1)."""
 ROUNDING: Final = 1e-6
-"""Rounding of numbers in a written calibration, metres, and as a sine."""
+"""Rounding errors in a written calibration: of lengths in metres, and of angles as sines."""
 TOWARDS: Final = (1.0, -1.0, -1.0)
 """From a camera's axes to axes with y up and z towards the camera."""
 

@@ -1,5 +1,5 @@
-"""The body proposed from a single silhouette, or one with the same silhouette that fits all
-else."""
+"""The body proposed from a single silhouette. Where faces, bends or landmarks contradict it,
+another body with the same silhouette takes its place."""
 
 from typing import Final, NamedTuple
 
@@ -26,8 +26,8 @@ CROWN: Final = 0.155
 people whose arms are not raised (docs/measurements.md)."""
 
 BESIDE: Final = 1 / 3
-"""Exponent from the confidence in a joint of one silhouette to that of its place in the picture:
-chosen on two performers (docs/measurements.md)."""
+"""Exponent for a joint's confidence: raised to it, the confidence of its place in space becomes
+that of its place in the picture. Chosen on two performers (docs/measurements.md)."""
 
 
 class Proposed(NamedTuple):
