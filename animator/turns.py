@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from common.body.body import Vector
+from common.body.extremities import cross
 
 OPPOSITE: Final = 1e-12
 """Distance from opposite within which two directions count as such: any turn of 180 degrees maps
@@ -39,7 +40,7 @@ def _half(starts: NDArray[np.float64], ends: NDArray[np.float64]) -> NDArray[np.
     b = ends / np.maximum(np.linalg.norm(ends, axis=-1, keepdims=True), OPPOSITE)
     wxyz = np.empty((*b.shape[:-1], 4))
     wxyz[..., 0] = 1.0 + (a * b).sum(axis=-1)
-    wxyz[..., 1:] = _cross(a, b)
+    wxyz[..., 1:] = cross(a, b)
     opposite = wxyz[..., 0] < OPPOSITE
     if opposite.any():
         a = np.broadcast_to(a, b.shape)[opposite]
@@ -58,8 +59,8 @@ def axes_of(
         across: (n, 3), not parallel to it.
         keep: Which of the two is met exactly; the other is made perpendicular to it.
     """
-    out = _cross(across, up)
-    x, y = (_cross(up, out), up) if keep == "up" else (across, _cross(out, across))
+    out = cross(across, up)
+    x, y = (cross(up, out), up) if keep == "up" else (across, cross(out, across))
     axes = np.stack([x, y, out], axis=-1)
     unit: NDArray[np.float64] = axes / np.linalg.norm(axes, axis=-2, keepdims=True)
     return unit
@@ -71,9 +72,3 @@ def unbroken(xyzw: Vector) -> Vector:
     signs = np.where(np.logical_xor.accumulate(np.concatenate([[False], turned])), -1.0, 1.0)
     followed: Vector = xyzw * signs[:, None]
     return followed
-
-
-def _cross(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Cross product of (..., 3), in a fifth of np.cross's time for few vectors."""
-    (ax, ay, az), (bx, by, bz) = np.moveaxis(a, -1, 0), np.moveaxis(b, -1, 0)
-    return np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=-1)

@@ -70,15 +70,15 @@ def extremities(joints_m: Places, stature_m: float) -> Places:
 
 def _nose(neck: Places, top: Places, left: Places, stature_m: float) -> Places:
     up = _unit(top - neck)
-    ahead = _unit(_cross(left, up))
+    ahead = _unit(cross(left, up))
     return top + stature_m * (NOSE_AHEAD_SHARE * ahead - NOSE_DOWN_SHARE * up)
 
 
 def _feet(knees: Places, ankles: Places, left: Places, stature_m: float) -> tuple[Places, Places]:
     """Heels and toes, (..., 2, 3) each, of the left and the right leg."""
     shank = _unit(ankles - knees)
-    ahead = _unit(_cross(shank, left))
-    outer = _cross(ahead, shank) * _OUTER
+    ahead = _unit(cross(shank, left))
+    outer = cross(ahead, shank) * _OUTER
     ahead = _flat(_unit(ahead + TOES_OUT * outer), ankles[..., 1] / stature_m)
     down = _unit(shank - (shank * ahead).sum(axis=-1, keepdims=True) * ahead)
     under = ankles + DOWN_SHARE * stature_m * down
@@ -110,7 +110,7 @@ def _unit(along: Places) -> Places:
     return unit
 
 
-def _cross(a: Places, b: Places) -> Places:
+def cross(a: Places, b: Places) -> Places:
     """Cross product of (..., 3); faster than np.cross for few vectors."""
     one, other = [1, 2, 0], [2, 0, 1]
     return a[..., one] * b[..., other] - a[..., other] * b[..., one]
