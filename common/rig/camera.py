@@ -48,7 +48,7 @@ class Rig(msgspec.Struct, frozen=True, cache_hash=True):
     cameras: tuple[Camera, ...]
     fps: float | None = None
     distortion: tuple[float, ...] = ()
-    """Size for every camera that has none of its own."""
+    """Distortion of every camera that has none of its own."""
 
 
 class PaperRig(NamedTuple):

@@ -57,7 +57,7 @@ class WorstFrame(NamedTuple):
     mean_mm: float
     """Mean error of its joints."""
     joint: str
-    """The largest error of a joint."""
+    """Name of the joint with the largest error."""
     joint_mm: float
 
 

@@ -80,9 +80,9 @@ class _Told(NamedTuple):
     """The arrays other than joints."""
 
     extremities: bool
-    """All bodies with joints."""
+    """Whether all bodies with joints have extremities."""
     liftings: bool
-    """Any bodies."""
+    """Whether any body has a lifting."""
     cameras: tuple[str, ...]
     """Names of the rig's cameras."""
 

@@ -42,7 +42,7 @@ class Wanted(NamedTuple):
     """The requested run."""
 
     folder: Path
-    """Its settings."""
+    """Its folder."""
     settings: Settings
     told: Mapping[str, object]
     """Further facts from the command."""

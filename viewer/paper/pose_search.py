@@ -42,7 +42,7 @@ class Found(NamedTuple):
     """One view's own result for a frame."""
 
     facing: Facing
-    """The vote on its facing."""
+    """The facing that the search assumes."""
     angles_deg: dict[str, float]
     """The searched pose."""
     squatting: bool
