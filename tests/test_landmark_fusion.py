@@ -12,7 +12,13 @@ from common.body.kinematics import joints
 from common.body.observation import Landmarks
 from common.body.proportions import body_vector
 from common.rig.camera import Camera, project
-from integrator.landmarks import front_back_flip, landmark_fusion, limb_springs, proposal_residual
+from integrator.landmarks import (
+    front_back_flip,
+    landmark_fusion,
+    limb_springs,
+    proposal_residual,
+    side_hypotheses,
+)
 from integrator.landmarks.joint_mixture import (
     LEAST,
     MOST,
@@ -268,9 +274,9 @@ def test_each_joint_is_looked_for_with_both_sides_of_either_view() -> None:
     """`most_probable` of what is said of it, joint by joint, for all that may be exchanged."""
     seen, rng = drawn_rays(1), np.random.default_rng(2)
     confidence, wider_m = rng.uniform(0.1, 0.95, 12), rng.uniform(0.0, 0.05, 12)
-    proposal = landmark_fusion.Proposal(walking()[AT], confidence, wider_m, 0.7)
+    proposal = side_hypotheses.Proposal(walking()[AT], confidence, wider_m, 0.7)
     ways = np.array(list(np.ndindex(2, 2)))
-    weighed = landmark_fusion._weighed(proposal, seen, 1.75, np.stack([ways, ways]))
+    weighed = side_hypotheses.weighed(proposal, seen, 1.75, np.stack([ways, ways]))
     values, places_m, precisions = (each.reshape(12, 2, 2, *each.shape[2:]) for each in weighed)
 
     def share(sure: float, between: tuple[float, float]) -> float:
@@ -281,7 +287,7 @@ def test_each_joint_is_looked_for_with_both_sides_of_either_view() -> None:
         inliers = np.zeros((2, 2))
         for view, own in at:
             sure = seen.confidence[view, own]
-            inliers[view, 0] = share(sure, landmark_fusion.SHOWN_RIGHT) if sure else 0.0
+            inliers[view, 0] = share(sure, side_hypotheses.SHOWN_RIGHT) if sure else 0.0
             other = seen.others_confidence[view, own]
             inliers[view, 1] = min(other if other >= SECOND else 0.0, MOST - inliers[view, 0])
         sure = float(confidence[joint])
@@ -289,7 +295,7 @@ def test_each_joint_is_looked_for_with_both_sides_of_either_view() -> None:
         shown = [1.75 * (SHOWN.right + SHOWN.unsure * (1.0 - seen.confidence[each])) for each in at]
         witnesses = Evidence(
             proposal.joints_m[joint],
-            share(sure, landmark_fusion.PROPOSED_RIGHT),
+            share(sure, side_hypotheses.PROPOSED_RIGHT),
             seen.centres_m,
             np.array([[seen.directions[each], seen.others[each]] for each in at]),
             inliers,

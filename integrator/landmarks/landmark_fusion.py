@@ -5,8 +5,7 @@ from typing import Final, NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from common.body.body import Floats, Vector
-from common.compiled import compiled
+from common.body.body import Vector
 from integrator.landmarks import (
     front_back_flip,
     left_right_swap,
@@ -14,29 +13,17 @@ from integrator.landmarks import (
     proposal_offset,
     proposal_residual,
 )
-from integrator.landmarks.joint_mixture import (
-    BOTH,
-    LEAST,
-    MOST,
-    PROPOSED,
-    SECOND,
-    SHOWN,
-    Evidence,
-    most_probable,
-)
+from integrator.landmarks.joint_mixture import PROPOSED
 from integrator.landmarks.landmark_rays import Rays
 from integrator.landmarks.left_right_swap import JOINTLY, Exchanged, Exchanges
 from integrator.landmarks.proposal_residual import Misfit
+from integrator.landmarks.side_hypotheses import Proposal, shown_right, weighed
 from integrator.proposal import pose_network
 from integrator.proposal.network_weights import JOINTS
 from integrator.proposal.pose_network import OTHER_SIDES
 
 ARMS, LEGS = slice(0, 6), slice(6, 12)
 """Indices of the arms and the legs in JOINTS."""
-PROPOSED_RIGHT: Final = (0.18, 0.9)
-"""Confidences in a proposed joint that mean probability 0 and 1 of being right."""
-SHOWN_RIGHT: Final = (0.02, 0.91)
-"""Confidences in a landmark that mean probability 0 and 1 of being right."""
 FIRM_M: Final = 0.02
 PLATT: Final = (2.15, 4.25)
 """Platt scaling of a joint's confidence: its logit at a standard deviation of FIRM_M, and the fall
@@ -59,19 +46,6 @@ class Memory(NamedTuple):
     """Residuals of recent proposals against the rays."""
     displaced: Vector
     """(4,) common offset of recent proposals from the rays."""
-
-
-class Proposal(NamedTuple):
-    """The joints proposed by the silhouettes, and their reliability."""
-
-    joints_m: NDArray[np.float64]
-    """(12, 3) world."""
-    confidence: Vector
-    """(12,) probability that each is less than 50 mm off."""
-    wider_m: Vector
-    """(12,) growth of their standard deviations, metres."""
-    often: float
-    """Probability that one is roughly right, if it is not right."""
 
 
 class Fused(NamedTuple):
@@ -115,7 +89,7 @@ def step(
     wider_m = proposal_residual.wider_m(misfit, rays, stature_m)
     doubt = proposal_residual.doubt(misfit, turned[1])
     displaced, proposed_m = proposal_offset.step(
-        None if before is None else before.displaced, proposed_m, _shown(rays), rays, stature_m
+        None if before is None else before.displaced, proposed_m, shown_right(rays), rays, stature_m
     )
     proposal = Proposal(
         proposed_m, _doubted(confidence, doubt), wider_m, _doubted(PROPOSED.often, doubt)
@@ -138,7 +112,7 @@ def _with_own_sides(
     usual = (_aside(proposal.joints_m, rays.centres_m), _confused(rays))
     if views <= JOINTLY:
         all_ways = np.indices((2,) * views).reshape(views, -1).T
-        values, places_m, precisions = _weighed(
+        values, places_m, precisions = weighed(
             proposal, rays, stature_m, np.stack([all_ways, all_ways])
         )
         arms, legs = (values[part].sum(axis=0).reshape((2,) * views) for part in (ARMS, LEGS))
@@ -149,13 +123,13 @@ def _with_own_sides(
         one_way = was[:, None] ^ np.concatenate(
             [np.zeros((1, views), int), np.eye(views, dtype=int)]
         )
-        values, _, _ = _weighed(proposal, rays, stature_m, one_way)
+        values, _, _ = weighed(proposal, rays, stature_m, one_way)
         arms, legs = (
             _each_way(values[part].sum(axis=0), own)
             for part, own in zip((ARMS, LEGS), was, strict=True)
         )
         exchanges, decided = left_right_swap.step_each(known, arms, legs, *usual)
-        _, places_m, precisions = _weighed(proposal, rays, stature_m, np.array(decided)[:, None])
+        _, places_m, precisions = weighed(proposal, rays, stature_m, np.array(decided)[:, None])
         at = [0, 0]
     joints_m = np.concatenate([places_m[ARMS, at[0]], places_m[LEGS, at[1]]])
     return (
@@ -177,34 +151,6 @@ def _each_way(values: Vector, was: NDArray[np.int_]) -> NDArray[np.float64]:
     return np.where(was[:, None] == 1, both[:, ::-1], both)
 
 
-def _weighed(
-    proposal: Proposal, rays: Rays, stature_m: float, ways: NDArray[np.int_]
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """`_modes` for evidence whose probability and spread follow from its confidence."""
-    shown = _shown(rays)
-    others = np.where(rays.others_confidence < SECOND, 0.0, rays.others_confidence)
-    confidence, wider_m = proposal.confidence, proposal.wider_m
-    found: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]] = _modes(
-        proposal.joints_m,
-        _share(confidence, PROPOSED_RIGHT),
-        np.hypot(PROPOSED.right_of(confidence), wider_m),
-        np.hypot(PROPOSED.roughly, wider_m),
-        proposal.often,
-        rays.centres_m,
-        np.stack([rays.directions, rays.others], axis=2),
-        np.stack([shown, np.minimum(others, MOST - shown)], axis=2),
-        stature_m * SHOWN.right_of(rays.confidence),
-        stature_m,
-        ways,
-    )
-    return found
-
-
-def _shown(rays: Rays) -> NDArray[np.float64]:
-    """(V, 12) probability that each landmark is right; 0: there is none."""
-    return np.where(rays.confidence > 0.0, _share(rays.confidence, SHOWN_RIGHT), 0.0)
-
-
 def _confidence(precisions: NDArray[np.float64]) -> Vector:
     """Probability that joints are less than 50 mm off, by their precisions (12, 6)."""
     spreads_m = np.sqrt(3.0 / precisions[:, _DIAGONAL].sum(axis=1))
@@ -216,12 +162,6 @@ def _confidence(precisions: NDArray[np.float64]) -> Vector:
 def _doubted(probability: Probability, doubt: float) -> Probability:
     """A probability, or some, whose odds are divided by `doubt`."""
     return probability / (probability + doubt * (1.0 - probability))
-
-
-def _share(confidence: Vector, between: tuple[float, float]) -> Vector:
-    never, always = between
-    found: Vector = ((confidence - never) / (always - never)).clip(LEAST, MOST)
-    return found
 
 
 def _aside(joints_m: NDArray[np.float64], centres_m: NDArray[np.float64]) -> tuple[float, ...]:
@@ -238,63 +178,6 @@ def _aside(joints_m: NDArray[np.float64], centres_m: NDArray[np.float64]) -> tup
 def _confused(rays: Rays) -> tuple[float, ...]:
     """Probability that each view took front for back."""
     return tuple(front_back_flip.confused(sure) for sure in rays.facing_confidence)
-
-
-@compiled
-def _modes(
-    proposed_m: Floats,
-    sure: Vector,
-    spreads_m: Vector,
-    roughly_m: Vector,
-    often: float,
-    centres_m: Floats,
-    directions: Floats,
-    seen: Floats,
-    seen_m: Floats,
-    stature_m: float,
-    ways: NDArray[np.int64],
-) -> tuple[Floats, Floats, Floats]:
-    """For each joint and each choice of views with exchanged sides: the log probability of its
-    place (12, S), the place (12, S, 3) and its precision (12, S, 6).
-
-    Args:
-        proposed_m: (12, 3)
-        sure: (12,) probability that each is right, and
-        spreads_m, roughly_m: (12,) its standard deviation if right, or if roughly right.
-        often: Probability that it is roughly right, if it is not right.
-        centres_m: (V, 3) the cameras.
-        directions: (V, 12, BOTH, 3) directions of their rays.
-        seen: (V, 12, BOTH) probability that each ray is right; 0: there is none.
-        seen_m: (V, 12) standard deviation of a right ray.
-        stature_m: The person's stature.
-        ways: (2, S, V) exchanges of arms and of legs; 1: that view exchanged them.
-    """
-    n, views, joints_of_part = len(proposed_m), len(centres_m), len(proposed_m) // 2
-    values, places_m = np.empty((n, ways.shape[1])), np.empty((n, ways.shape[1], 3))
-    precisions = np.empty((n, ways.shape[1], 6))
-    along, inliers = np.empty((views, BOTH, 3)), np.empty((views, BOTH))
-    spreads = np.empty(1 + views)
-    for joint in range(n):
-        spreads[0] = spreads_m[joint]
-        for way in range(ways.shape[1]):
-            for view in range(views):
-                own = joint ^ ways[joint // joints_of_part, way, view]
-                along[view] = directions[view, own]
-                inliers[view] = seen[view, own]
-                spreads[1 + view] = seen_m[view, own]
-            given = Evidence(
-                proposed_m[joint],
-                sure[joint],
-                centres_m,
-                along,
-                inliers,
-                spreads,
-                roughly_m[joint],
-                often,
-                stature_m,
-            )
-            values[joint, way] = most_probable(given, places_m[joint, way], precisions[joint, way])
-    return values, places_m, precisions
 
 
 assert len(JOINTS) == LEGS.stop
