@@ -98,7 +98,8 @@ def sources(root: Path) -> list[Source]:
 def _source(root: Path, path: Path) -> Source:
     text = (root / path).read_text()
     tree = ast.parse(text)
-    lines = _code_lines(text, tree)
+    nodes, tokens = list(ast.walk(tree)), _tokens(text)
+    lines = _code_lines(nodes, tokens)
     functions = [
         Function(
             place=f"{path.as_posix()} ({node.name})",
@@ -107,22 +108,22 @@ def _source(root: Path, path: Path) -> Source:
             parameters=_parameters(node),
             kind=_kind(node),
         )
-        for node in ast.walk(tree)
+        for node in nodes
         if isinstance(node, Definition)
     ]
     return Source(
         path,
         len(lines),
         functions,
-        set(_imports(root, ast.walk(tree))),
+        set(_imports(root, nodes)),
         set(_imports(root, _run_at_once(tree))),
-        [t.string for t in _tokens(text) if t.type not in {*NO_CODE, tokenize.STRING}],
-        sum(isinstance(each, ast.Name) and each.id == "Any" for each in _annotations(tree)),
+        [t.string for t in tokens if t.type not in NO_CODE and t.type != tokenize.STRING],
+        sum(isinstance(each, ast.Name) and each.id == "Any" for each in _annotations(nodes)),
     )
 
 
-def _tokens(text: str) -> Iterator[tokenize.TokenInfo]:
-    return tokenize.generate_tokens(io.StringIO(text).readline)
+def _tokens(text: str) -> list[tokenize.TokenInfo]:
+    return list(tokenize.generate_tokens(io.StringIO(text).readline))
 
 
 def _run_at_once(node: ast.AST) -> Iterator[ast.AST]:
@@ -134,21 +135,21 @@ def _run_at_once(node: ast.AST) -> Iterator[ast.AST]:
             yield from _run_at_once(child)
 
 
-def _annotations(tree: ast.Module) -> Iterator[ast.expr | None]:
-    for node in ast.walk(tree):
+def _annotations(nodes: Iterable[ast.AST]) -> Iterator[ast.expr | None]:
+    for node in nodes:
         if isinstance(node, ast.arg | ast.AnnAssign):
             yield node.annotation
         elif isinstance(node, Definition):
             yield node.returns
 
 
-def _code_lines(text: str, tree: ast.Module) -> set[int]:
+def _code_lines(nodes: Iterable[ast.AST], tokens: Iterable[tokenize.TokenInfo]) -> set[int]:
     """Numbers of the lines that hold code."""
     lines: set[int] = set()
-    for token in _tokens(text):
+    for token in tokens:
         if token.type not in NO_CODE:
-            lines |= set(range(token.start[0], token.end[0] + 1))
-    for node in ast.walk(tree):
+            lines.update(range(token.start[0], token.end[0] + 1))
+    for node in nodes:
         if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant):
             lines -= set(range(node.lineno, (node.end_lineno or 0) + 1))
     return lines

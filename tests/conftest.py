@@ -1,6 +1,7 @@
 """What the tests share: where the clips lie."""
 
 import os
+import sys
 from pathlib import Path
 from typing import Final
 
@@ -10,6 +11,10 @@ from hypothesis import settings
 # As in the product's own processes: tests run side by side.
 for library in ("OMP", "OPENBLAS", "NUMBA"):
     os.environ.setdefault(f"{library}_NUM_THREADS", "1")
+
+# Containers ask for none. Each process of pytest would rewrite all tests anew: 13 s of each.
+sys.dont_write_bytecode = False
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
 settings.register_profile("untimed", deadline=None)
 settings.load_profile("untimed")

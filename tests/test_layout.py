@@ -1,7 +1,9 @@
 """The house rules that a reader relies on: arrows between packages, names, and the list of ids."""
 
 import importlib
+import os
 import re
+import runpy
 import subprocess
 import sys
 import tomllib
@@ -202,6 +204,17 @@ def test_a_test_bears_the_name_of_what_it_tests() -> None:
     modules = {path.stem for path in paths if path.parts[0] != "tests"}
     tests = {path.stem.removeprefix("test_") for path in paths if path.stem.startswith("test_")}
     assert tests - modules == set(SYSTEM)
+
+
+def test_what_tests_are_rewritten_to_is_kept_whatever_the_machine_says(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Else each process of each run rewrites all of them."""
+    monkeypatch.setenv("PYTHONDONTWRITEBYTECODE", "1")
+    monkeypatch.setattr(sys, "dont_write_bytecode", True)
+    runpy.run_path(str(ROOT / "tests/conftest.py"))
+    assert not sys.dont_write_bytecode
+    assert "PYTHONDONTWRITEBYTECODE" not in os.environ
 
 
 def test_newer_pythons_are_tried_with_tests_that_are_there() -> None:
