@@ -1,6 +1,7 @@
 """Films of a printed board by cameras that are known: lenses that bend, blur, noise."""
 
 from collections.abc import Iterator
+from functools import lru_cache
 from typing import NamedTuple
 
 import cv2
@@ -99,6 +100,7 @@ class Studio:
         return (left, top, right, bottom) if right - left > 2 and bottom - top > 2 else None
 
 
+@lru_cache(maxsize=4)
 def _straight(camera: Camera, size: tuple[int, int]) -> NDArray[np.float64]:
     """(FINER h, FINER w, 2) where each part of each pixel looks, 1 m ahead."""
     width, height = size

@@ -11,11 +11,10 @@ LINEAR: Final = 4
 """Indices of the terms that far cameras need: x and y in either view."""
 NEARLY_FAR: Final = 1e-4
 """Penalty of the other terms, which tell near from far: without it they explain anything."""
-TRIED: Final = np.stack(
-    np.meshgrid(*2 * [np.arange(-45.0, 46.0, 7.5)], np.arange(-0.3, 0.31, 0.1)), axis=-1
-).reshape(-1, 3)
-"""Ranges of the search: directions in either picture from down, degrees, and the logarithm of
-view 1's weight over view 2's."""
+TURNS_DEG: Final = np.arange(-45.0, 46.0, 7.5)
+"""Range of the search: directions in either picture, from down."""
+SHARES: Final = np.arange(-0.3, 0.31, 0.1)
+"""Range of the search: the logarithm of view 1's weight over view 2's."""
 FINER: Final = (1.0, 1.0 / 6.0, 1.0 / 36.0)
 """Steps of the successive searches around the best, in steps of the first."""
 
@@ -65,19 +64,27 @@ def relation_of(terms: Numbers, weights: Numbers) -> Relation:
 
 def _least(spread: Numbers) -> Numbers:
     """(4,) weights of both views for which the quadratic form (4, 4) is least."""
-    at = np.zeros(3)
+    one_deg, other_deg, share = 0.0, 0.0, 0.0
     for finer in FINER:
-        tried = at + finer * TRIED
-        weights = _weights(tried)
-        at = tried[np.argmin(((weights @ spread) * weights).sum(axis=1))]
-    least: Numbers = _weights(at[None])[0]
+        ours, theirs, shares = (
+            at + finer * tried
+            for at, tried in ((one_deg, TURNS_DEG), (other_deg, TURNS_DEG), (share, SHARES))
+        )
+        weights = _weights(ours, theirs, shares)
+        flat = weights.reshape(-1, LINEAR)
+        forms = ((flat @ spread) * flat).sum(axis=1)
+        m, n, k = np.unravel_index(np.argmin(forms), weights.shape[:3])
+        one_deg, other_deg, share = ours[n], theirs[m], shares[k]
+    least: Numbers = _weights(*(np.array([at]) for at in (one_deg, other_deg, share)))[0, 0, 0]
     return least
 
 
-def _weights(tried: Numbers) -> Numbers:
-    """(n, 4) directions, from down in either picture, and view 1's weight."""
-    turns, share = np.radians(tried[:, :2]), np.exp(tried[:, 2] / 2.0)
-    across, down = np.sin(turns), np.cos(turns)
-    ours, theirs = share[:, None], -1.0 / share[:, None]
-    one, other = (np.stack([across[:, n], down[:, n]], axis=1) for n in (0, 1))
-    return np.hstack([ours * one, theirs * other])
+def _weights(one_deg: Numbers, other_deg: Numbers, share: Numbers) -> Numbers:
+    """(m, n, k, 4) of n directions from down in view 1, m in view 2, and k of view 1's weights."""
+    one, other, ours = np.radians(one_deg), np.radians(other_deg)[:, None], np.exp(share / 2.0)
+    weights = np.empty((len(other_deg), len(one_deg), len(share), LINEAR))
+    weights[..., 0], weights[..., 1] = (ours * turned(one)[:, None] for turned in (np.sin, np.cos))
+    weights[..., 2], weights[..., 3] = (
+        -1.0 / ours * turned(other)[..., None] for turned in (np.sin, np.cos)
+    )
+    return weights
