@@ -11,7 +11,6 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from importlib import import_module
-from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +18,7 @@ import numpy as np
 import psutil
 import pytest
 from test_own_process import SOON_S, ended_within, written
+from worker_jobs import heeds, says, sleeps
 
 from common.config.part_settings import SettingsError
 from common.platform import platforms
@@ -46,7 +46,7 @@ import sys, time
 from pathlib import Path
 from common.platform.platform import Job
 from common.platform.platforms import platform
-from test_platforms import sleeps
+from worker_jobs import sleeps
 if __name__ == "__main__":
     if sys.argv[1] == "child":
         one = platform().child("spoken", 20.0)
@@ -65,28 +65,6 @@ Begin = Callable[..., Child]
 def main_of(*lines: str) -> str:
     """A child's module whose `main` is of such lines."""
     return "\n    ".join(["import os, sys, time\ndef main(asker):", *lines])
-
-
-def sleeps(word: str, words: Connection) -> None:
-    """A worker that does not hear that it shall end."""
-    Path(word).write_text(str(os.getpid()))
-    time.sleep(600.0)
-
-
-def heeds(word: str, words: Connection) -> None:
-    """A worker that ends in order when it is asked to."""
-    ended: list[int] = []
-    with platform().asked_to_end(lambda: ended.append(1)):
-        Path(word).write_text(str(os.getpid()))
-        while not ended:
-            time.sleep(0.01)
-    words.send("ended in order")
-    raise SystemExit(5)
-
-
-def says(words: Connection) -> None:
-    """A worker that says how it began."""
-    words.send((os.environ["OMP_NUM_THREADS"], os.environ.get("LEFT", "")))
 
 
 @pytest.fixture(params=PLATFORMS)
