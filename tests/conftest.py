@@ -3,10 +3,13 @@
 import os
 import sys
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import pytest
 from hypothesis import settings
+
+if TYPE_CHECKING:
+    from runtime.offline.lockstep import Tracked
 
 # As in the product's own processes: tests run side by side.
 for library in ("OMP", "OPENBLAS", "NUMBA"):
@@ -47,6 +50,28 @@ def clip(tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("clips")
     wanted = ClipSet("postures", seed=90_001, postures=("raise_right_lateral",))
     return write_set(out, wanted, (160, 120))[0]
+
+
+@pytest.fixture(scope="session")
+def tracked_clip(clip: Path) -> "Tracked":
+    """What is made of that clip by default, by both views."""
+    from common.config.settings import Settings
+    from runtime.offline.lockstep import Decoders, track_clip
+
+    with Decoders() as decoders:
+        return track_clip(Settings(clip=str(clip)), decoders)
+
+
+@pytest.fixture(scope="session")
+def recorded_run(clip: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of the same with its recording; who changes it copies it before."""
+    from rich.console import Console
+
+    from runtime.offline.batch import Asked, track_all
+
+    out = tmp_path_factory.mktemp("recorded")
+    track_all([clip], out, Asked(record=True), Console(quiet=True))
+    return out / clip.name
 
 
 @pytest.fixture(scope="module")

@@ -10,7 +10,7 @@ from common.config import config_file
 from common.config.part_settings import SettingsError
 from common.config.settings import Settings
 from common.video.clip_sources import ClipError
-from runtime.offline.lockstep import Decoders, measured_before, track_clip
+from runtime.offline.lockstep import Decoders, Tracked, measured_before, track_clip
 from runtime.offline.opening_clip import body_of
 
 PERSON = thesis_bdp(1.62)
@@ -75,9 +75,9 @@ def test_a_missing_opening_clip_is_named(clip: Path) -> None:
 
 
 @pytest.mark.slow
-def test_a_run_knows_the_body_from_its_first_frame_on(clip: Path) -> None:
+def test_a_run_knows_the_body_from_its_first_frame_on(clip: Path, tracked_clip: Tracked) -> None:
+    known = tracked_clip.bodies[-1].bdp
     with Decoders() as decoders:
-        known = track_clip(Settings(clip=str(clip)), decoders).bodies[-1].bdp
         done = track_clip(Settings(clip=str(clip), opening=str(clip)), decoders)
     first = next(body for body in done.bodies if body.status != "empty")
     assert known is not None

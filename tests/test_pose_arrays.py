@@ -8,17 +8,15 @@ import numpy as np
 import pytest
 
 from common.bus.messages import Body, Lifting
-from common.config.settings import Settings
-from runtime.offline.lockstep import Decoders, track_clip
+from runtime.offline.lockstep import Tracked
 from runtime.store import pose_arrays
 from runtime.store.joint_arrays import on_disk
 from runtime.store.pose_arrays import mapped_poses, poses
 
 
-@pytest.fixture(scope="module")
-def bodies(clip: Path) -> list[Body]:
-    with Decoders() as decoders:
-        return list(track_clip(Settings(clip=str(clip)), decoders).bodies)
+@pytest.fixture
+def bodies(tracked_clip: Tracked) -> list[Body]:
+    return list(tracked_clip.bodies)
 
 
 def lifted(body: Body) -> Body:

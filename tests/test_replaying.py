@@ -34,10 +34,8 @@ QUIET = Console(quiet=True)
 
 
 @pytest.fixture(scope="module")
-def run(clip: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    out = tmp_path_factory.mktemp("recorded")
-    track_all([clip], out, Asked(record=True), QUIET)
-    return out / clip.name
+def run(recorded_run: Path) -> Path:
+    return recorded_run
 
 
 @pytest.mark.slow

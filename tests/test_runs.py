@@ -13,7 +13,7 @@ from common.body.body import ANGLE_NAMES, JOINT_NAMES
 from common.body.extremities import EXTREMITY_NAMES
 from common.bus.messages import Body, Performance, Posture
 from common.config.settings import Settings
-from runtime.offline.lockstep import Decoders, track_clip
+from runtime.offline.lockstep import Tracked
 from runtime.store.joint_arrays import on_disk
 from runtime.store.past_run import open_run
 from runtime.store.pose_arrays import poses
@@ -51,12 +51,9 @@ CONTRACT = {
 
 
 @pytest.fixture(scope="module")
-def run(clip: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def run(clip: Path, tracked_clip: Tracked, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("runs") / "run"
-    settings = Settings(clip=str(clip))
-    with Decoders() as decoders:
-        tracked = track_clip(settings, decoders)
-    write_run(folder, tracked.bodies, settings, tracked.facts)
+    write_run(folder, tracked_clip.bodies, Settings(clip=str(clip)), tracked_clip.facts)
     return folder
 
 

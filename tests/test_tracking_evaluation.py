@@ -21,8 +21,10 @@ from lab.accuracy.accuracy import compare, summary
 from lab.accuracy.silhouette_iou import Overlap
 from lab.accuracy.tracking_evaluation import EvaluationError, evaluate_tracking
 from lab.accuracy.worst_frames import TRACKED, TRUE
-from runtime.offline.batch import Asked, track_all
+from runtime.offline.batch import Asked
+from runtime.offline.lockstep import Tracked
 from runtime.store.clip_paths import ClipsFailed
+from runtime.store.runs import write_run
 
 QUIET = Console(quiet=True)
 TERMINAL = Console(file=StringIO(), force_terminal=True)
@@ -30,9 +32,10 @@ TERMINAL = Console(file=StringIO(), force_terminal=True)
 
 
 @pytest.fixture(scope="module")
-def runs(clip: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def runs(clip: Path, tracked_clip: Tracked, tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("stand")
-    track_all([clip], out, Asked(), QUIET)
+    settings = Settings(clip=str(clip))
+    write_run(out / clip.name, tracked_clip.bodies, settings, tracked_clip.facts)
     return out
 
 
