@@ -10,6 +10,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Callable
+from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 from typing import NamedTuple
@@ -46,11 +47,16 @@ class Ended(NamedTuple):
         return [line for line in self.err.splitlines() if line.startswith("warning: ")]
 
 
+COMMANDS_OF = cache(typer.main.get_command)
+"""Read once from the signatures of all commands, and not for each that is run."""
+
+
 class Commands:
     """Runs commands in this process as the shell would."""
 
     def __init__(self, patch: pytest.MonkeyPatch, capture: pytest.CaptureFixture[str]) -> None:
         self._patch, self._capture = patch, capture
+        patch.setattr(typer.main, "get_command", COMMANDS_OF)
 
     def __call__(self, *words: str | Path) -> Ended:
         self._patch.setattr(sys, "argv", ["tritrack", *map(str, words)])
