@@ -22,7 +22,10 @@ os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 settings.register_profile("untimed", deadline=None)
 settings.load_profile("untimed")
 
-LONGEST: Final = ("readme", "system_wheel", "first_run", "resuming", "board_rig")
+LONGEST: Final = (
+    *("readme", "system_wheel", "first_run", "system_namespaces", "resuming"),
+    *("landmark_network", "system_live_fallback", "board_rig"),
+)
 """Files that take minutes: begun first, so that none is left alone at the end."""
 
 

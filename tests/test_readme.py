@@ -120,6 +120,7 @@ def shell(copy: Path, tmp_path: Path) -> Iterator[dict[str, str]]:
     with TemporaryDirectory() as short:  # as a user's is: sockets have names of 107 letters at most
         yield inherited | {
             "PATH": os.pathsep.join([str(copy / ".venv/bin"), *places]),
+            "PIP_COMPILE": "0",  # but what is imported, which Python does then
             "PIP_CACHE_DIR": pip("cache", "dir").stdout.strip(),
             "XDG_CACHE_HOME": str(tmp_path / "cache"),
             "TMPDIR": short,

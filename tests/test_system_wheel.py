@@ -41,7 +41,7 @@ def programs(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     subprocess.run([sys.executable, "-m", "venv", folder], check=True)
     before = set(site(folder).iterdir())
     done = pip(
-        *("--python", str(folder / "bin" / "python"), "install", "--quiet"),
+        *("--python", str(folder / "bin" / "python"), "install", "--quiet", "--no-compile"),
         *("--constraint", str(ROOT / "constraints.txt"), f"{wheel}[single]"),
     )
     assert done.returncode == 0, done.stderr
