@@ -102,13 +102,15 @@ def own_landmarks(
     return _told(best)
 
 
-def found_anywhere(picture: Image) -> tuple[Landmarks, float]:
+def found_anywhere(picture: Image, eye: LandmarkModel = TWICE) -> tuple[Landmarks, float]:
     """A person in a picture (H, W, 3) of which nothing is known, and how probably no person is."""
-    best = _set_upright(picture, _search(picture, TWICE), TWICE)
+    best = _set_upright(picture, _search(picture, eye), eye)
     return _told(best), best.nobody
 
 
-def found_between(picture: Image, corners_px: Places, margin: float) -> tuple[Landmarks, float]:
+def found_between(
+    picture: Image, corners_px: Places, margin: float, eye: LandmarkModel = TWICE
+) -> tuple[Landmarks, float]:
     """A person in a picture whose joints lie about between two corners, and how probably no person
     is.
 
@@ -116,9 +118,10 @@ def found_between(picture: Image, corners_px: Places, margin: float) -> tuple[La
         picture: (H, W, 3)
         corners_px: (2, 2)
         margin: How far the body reaches beyond them, in their longer distance.
+        eye: Which network looks, and how often.
     """
-    look = _look(picture, None, window_about(corners_px, margin=margin), TWICE)
-    best = _set_upright(picture, look, TWICE)
+    look = _look(picture, None, window_about(corners_px, margin=margin), eye)
+    best = _set_upright(picture, look, eye)
     return _told(best), best.nobody
 
 
