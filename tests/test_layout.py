@@ -272,7 +272,8 @@ def test_only_one_file_has_functions_compiled() -> None:
 def test_no_file_name_occurs_twice() -> None:
     names = Counter(path.name for path in tracked(ROOT) if path.suffix == ".py")
     twice = {name for name, times in names.items() if times > 1}
-    assert twice <= {"__init__.py", "__main__.py"}
+    asked_for = {"pictures.py"}  # of the benchmarks, by this name
+    assert twice <= {"__init__.py", "__main__.py"} | asked_for
 
 
 def test_every_file_says_what_it_is_in_its_first_line() -> None:

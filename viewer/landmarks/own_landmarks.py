@@ -29,9 +29,8 @@ SURE: Final = 0.5
 LEAST: Final = 0.3
 """Where no silhouette says that a person is there, they must be surer than this on average."""
 EMPTY: Final = 0.08
-"""Who is not sure, and so probably no person, is no person, silhouette or not: in rooms whose
-doors, lights and things move, 0.1 % of silhouettes with a person made up are, and 88 % of those
-with no person."""
+    """A person in a picture (H, W, 3) of which nothing is known, and how probably no person is."""
+    best = _set_upright(picture, _any_way_up(picture, _search(picture, eye), eye), eye)
 COUNTS: Final = 0.15
 """Confidence from which a joint counts for the place of the next window."""
 MARGIN: Final = 0.06
@@ -104,7 +103,7 @@ def own_landmarks(
 
 def found_anywhere(picture: Image, eye: LandmarkModel = TWICE) -> tuple[Landmarks, float]:
     """A person in a picture (H, W, 3) of which nothing is known, and how probably no person is."""
-    best = _set_upright(picture, _search(picture, eye), eye)
+    best = _set_upright(picture, _any_way_up(picture, _search(picture, eye), eye), eye)
     return _told(best), best.nobody
 
 
@@ -121,7 +120,7 @@ def found_between(
         eye: Which network looks, and how often.
     """
     look = _look(picture, None, window_about(corners_px, margin=margin), eye)
-    best = _set_upright(picture, look, eye)
+    best = _set_upright(picture, _any_way_up(picture, look, eye), eye)
     return _told(best), best.nobody
 
 
@@ -157,6 +156,15 @@ def _surest(picture: Image, seen: Seen, known: Window | None, eye: LandmarkModel
     if seen.box is None or not turn_deg or best.surety >= SURE:
         return best
     return max(best, _look(picture, seen.mask, window_of(seen.box), eye), key=SUREST)
+
+
+def _any_way_up(picture: Image, look: _Look, eye: LandmarkModel) -> _Look:
+    """A look, or where that is unsure the surest of it and of those in turned windows."""
+    if look.surety >= TURNED:
+        return look
+    turns_deg = (look.window.turn_deg + quarter_deg for quarter_deg in QUARTERS_DEG)
+    windows = (look.window._replace(turn_deg=turn_deg) for turn_deg in turns_deg)
+    return max(look, *(_look(picture, look.mask, each, eye) for each in windows), key=SUREST)
 
 
 def _set_upright(picture: Image, look: _Look, eye: LandmarkModel) -> _Look:
