@@ -1,0 +1,76 @@
+"""A network of landmarks in bytes: weights by channel, activations by their range on pictures.
+
+Layers that see colours at their finest, the end of the way up and the heads stay whole: in bytes
+they cost MoveNet Lightning 1.5 points of 70 on photographs, and bought no time (`docs/models.md`).
+"""
+
+import tempfile
+from collections.abc import Collection, Iterable, Iterator
+from pathlib import Path
+from typing import Final
+
+import onnx
+from onnx import GraphProto
+from onnxruntime.quantization import (
+    CalibrationDataReader,
+    QuantFormat,
+    QuantType,
+    quantize_static,
+)
+from onnxruntime.quantization.shape_inference import quant_pre_process
+
+from lab.landmark_lessons.landmark_file import WEIGHT
+from viewer.landmarks.landmark_window import Planes
+
+FINEST: Final = ("stem.", "blocks.0.", "blocks.1.", "up.2.")
+HEADS: Final = ("heat.", "correction.", "nearest.", "summed.", "told.")
+WHOLE: Final = FINEST + HEADS
+"""Parts of `MovenetLandmarks` whose layers stay whole."""
+
+
+class _Windows(CalibrationDataReader):  # type: ignore[misc]
+    """Windows as the network takes them, one after another."""
+
+    def __init__(self, windows: Iterable[Planes]) -> None:
+        self.rest = iter(windows)
+
+    def get_next(self) -> dict[str, Planes] | None:
+        """The next, or None after the last."""
+        planes = next(self.rest, None)
+        return None if planes is None else {"planes": planes}
+
+
+def write_in_bytes(
+    source: Path, windows: Iterable[Planes], out: Path, whole: Collection[str] = WHOLE
+) -> None:
+    """Write a network of landmarks in bytes.
+
+    Args:
+        source: What `write_network` wrote.
+        windows: (1, PLANES, SIDE, SIDE) each, of any people; the ranges of activations are theirs.
+        out: The file to write.
+        whole: Names of parts that stay as they are.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        prepared = Path(folder) / "prepared.onnx"
+        quant_pre_process(source, prepared, skip_symbolic_shape=True)
+        left = list(_kept_whole(onnx.load(prepared).graph, tuple(whole)))
+        quantize_static(
+            prepared,
+            out,
+            _Windows(windows),
+            quant_format=QuantFormat.QDQ,
+            per_channel=True,
+            activation_type=QuantType.QUInt8,
+            weight_type=QuantType.QInt8,
+            nodes_to_exclude=left,
+        )
+
+
+def _kept_whole(graph: GraphProto, whole: tuple[str, ...]) -> Iterator[str]:
+    """The names of nodes that have weights of such parts."""
+    for node in graph.node:
+        weights = [name for name in node.input if name.endswith(WEIGHT)]
+        parts = [name.removeprefix("network.").removeprefix("photographed.") for name in weights]
+        if any(part.startswith(whole) for part in parts):
+            yield node.name
