@@ -28,7 +28,7 @@ WHOLE: Final = FINEST + HEADS
 """Parts of `MovenetLandmarks` whose layers stay whole."""
 
 
-class _Windows(CalibrationDataReader):  # type: ignore[misc]
+class _Windows(CalibrationDataReader):
     """Windows as the network takes them, one after another."""
 
     def __init__(self, windows: Iterable[Planes]) -> None:
