@@ -1,5 +1,6 @@
 """One viewer's step: the stages of section 3 in their order."""
 
+import math
 from collections.abc import Sequence
 from typing import Final, NamedTuple
 
@@ -32,6 +33,8 @@ from viewer.silhouette.silhouette import Seen
 from viewer.stick.standing_height import Standing
 from viewer.stick.stick_report import with_stick
 
+SEARCH_S: Final = 0.5
+"""Time between two looks at all of the picture, beside those where a person is known."""
 PELVIS: Final = JOINT_NAMES.index("pelvis")
 
 
@@ -67,7 +70,9 @@ class State(NamedTuple):
     standing: Standing | None
     """Height of the standing person; None: not known before."""
     landmarks: Landmarks | None = None
-    """Capture time of the last processed frame."""
+    """Those of the last processed frame."""
+    searched_s: float = -math.inf
+    """Capture time of the last frame whose whole picture was searched for people."""
     near_px: Pixel | None = None
     """Middle of the last silhouette, for frames without a guide's prediction."""
     moved: moved_camera.State | None = None
@@ -156,6 +161,8 @@ def look(state: State, frame: CapturedFrame, guide: Guide | None) -> tuple[State
     state = _followed(_patched(state, frame.index), frame)
     remembered, seen = silhouette.step(state.silhouette, frame.picture, _near_px(state, guide))
     landmarks = _landmarks(state, frame, seen)
+    if _is_search(state, frame):
+        state = state._replace(searched_s=frame.captured_s)
     held = corrected(seen, landmarks, state.setup.settings.silhouette.min_height_share)
     if held.is_changed:
         remembered = silhouette.without_things(
@@ -251,13 +258,19 @@ def _landmarks(state: State, frame: CapturedFrame, seen: Seen) -> Landmarks | No
     settings = state.setup.settings
     if settings.looks_itself:
         eye = LandmarkModel(network_of(settings.landmarks), state.setup.alone and not frame.hurried)
-        return own_landmarks(frame.picture, seen, state.landmarks, eye)
+        searches = _is_search(state, frame)
+        return own_landmarks(frame.picture, seen, state.landmarks, eye, searches=searches)
     return nearest_landmarks(frame.landmarks, seen.box)
 
 
 def _is_left_out(setup: Setup, frame: CapturedFrame) -> bool:
     """Whether the landmarks of a frame are skipped."""
     return frame.hurried and not setup.alone and setup.settings.looks_itself
+
+
+def _is_search(state: State, frame: CapturedFrame) -> bool:
+    """Whether all of the picture is looked at for people, whatever is known."""
+    return not frame.hurried and frame.captured_s >= state.searched_s + SEARCH_S
 
 
 def _followed(state: State, frame: CapturedFrame) -> State:

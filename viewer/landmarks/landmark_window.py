@@ -19,6 +19,8 @@ PLANES: Final = 4
 """Blue, green, red, silhouette."""
 CORNERS: Final = (math.sqrt(2.0) - 1.0) / 2.0
 """How far the corners of a turned square reach beyond it, in sides."""
+SHARED: Final = 0.7
+"""Intersection over union from which windows are of one person."""
 GREY: Final = 128
 """Of a silhouette that is not known: what the network takes for 0."""
 
@@ -72,6 +74,14 @@ def whole(shape: tuple[int, ...]) -> Window:
     """The window that holds all of a picture (H, W, ...)."""
     side = max(shape[:2])
     return Window((shape[1] - side) // 2, (shape[0] - side) // 2, side)
+
+
+def same_place(first: Window, second: Window) -> bool:
+    """Whether two windows are of one person: the common part is at least SHARED of their union."""
+    starts = ((first.left, second.left), (first.top, second.top))
+    shared = [max(0, min(a + first.side, b + second.side) - max(a, b)) for a, b in starts]
+    common = shared[0] * shared[1]
+    return common >= SHARED * (first.side**2 + second.side**2 - common)
 
 
 def planes_of(picture: Image, mask: Mask | None, window: Window, side: int = SIDE) -> Planes:

@@ -17,6 +17,7 @@ from viewer.landmarks.landmark_window import (
     Places,
     Window,
     planes_of,
+    same_place,
     turned_window_of,
     whole,
     window_about,
@@ -78,13 +79,20 @@ SUREST: Final = attrgetter("surety")
 
 
 def own_landmarks(
-    picture: Image, seen: Seen, before: Landmarks | None, eye: LandmarkModel = LandmarkModel()
+    picture: Image,
+    seen: Seen,
+    before: Landmarks | None,
+    eye: LandmarkModel = LandmarkModel(),
+    *,
+    searches: bool = False,
 ) -> Landmarks | None:
     """What the network makes of a picture; None where it sees no person.
 
     It looks where the silhouette is, in a window as upright as the trunk was in the frame before.
-    Where it is not sure there it also looks, without the silhouette, where it saw a person the
-    frame before, or in all of the picture. A trunk that leans in its window is looked at again,
+    Where it is not sure there, or saw a person elsewhere the frame before, it also looks there,
+    without the silhouette; where it knows of no person, in all of the picture. A silhouette is of
+    what changed: of a person whose legs stay it lacks them, and the window that it gives does too.
+    A trunk that leans in its window is looked at again,
     upright: photographs taught the network such. Of synthetic people who lean by 60 to 180 degrees
     60 % of the joints are within a tenth of the stature as they are, 74 % looked at again, 80 %
     once the lean is known, and the facing about the trunk is less than 45 degrees off in 97 % of
@@ -96,9 +104,13 @@ def own_landmarks(
         seen: The silhouette in it.
         before: Of the frame before.
         eye: Which network looks, and how often.
+        searches: All of the picture is looked at too, whatever is known.
     """
     known = None if before is None else _about(np.array(before.joints_px), before.confidence)
-    best = _set_upright(picture, _surest(picture, seen, known, eye), eye)
+    best = _surest(picture, seen, known, eye)
+    if searches:
+        best = _anywhere(picture, best, eye)
+    best = _set_upright(picture, best, eye)
     if seen.box is None and (best.nobody > 0.5 or best.surety < LEAST):
         return None
     if best.surety < SURE and best.nobody > EMPTY:
@@ -154,13 +166,23 @@ def _surest(picture: Image, seen: Seen, known: Window | None, eye: LandmarkModel
     if seen.box is not None:
         window = turned_window_of(seen.mask, turn_deg) if turn_deg else window_of(seen.box)
         looks.append(_look(picture, seen.mask, window, eye))
-    if not looks or looks[0].surety < SURE:
+    is_elsewhere = known is not None and bool(looks) and not same_place(looks[0].window, known)
+    if not looks or looks[0].surety < SURE or is_elsewhere:
         away = _search(picture, eye) if known is None else _look(picture, None, known, eye)
         looks.append(away)
     best = max(looks, key=SUREST)
     if seen.box is None or not turn_deg or best.surety >= SURE:
         return best
     return max(best, _look(picture, seen.mask, window_of(seen.box), eye), key=SUREST)
+
+
+def _anywhere(picture: Image, best: _Look, eye: LandmarkModel) -> _Look:
+    """A look, or a surer one at a person whom all of the picture shows elsewhere."""
+    far = _look(picture, None, whole(picture.shape), eye)
+    window = _about(far.joints_px, tuple(far.confidence))
+    if window is None or same_place(window, best.window):
+        return best
+    return max(best, _look(picture, None, window, eye), key=SUREST)
 
 
 def _any_way_up(picture: Image, look: _Look, eye: LandmarkModel) -> _Look:
