@@ -24,7 +24,7 @@ from viewer.captured_frame import CapturedFrame
 from viewer.expected_body import expected_body
 from viewer.landmarks.landmark_looks import network_of
 from viewer.landmarks.outside_source import nearest_landmarks
-from viewer.landmarks.own_landmarks import LandmarkModel, own_landmarks
+from viewer.landmarks.own_landmarks import LandmarkModel, Told, own_landmarks
 from viewer.paper import pose_search
 from viewer.paper.measure import opening_measure
 from viewer.room.outline_correction import corrected, is_trusted
@@ -160,10 +160,11 @@ def look(state: State, frame: CapturedFrame, guide: Guide | None) -> tuple[State
         return state, msgspec.structs.replace(view, fault=fault), mask_of(view)
     state = _followed(_patched(state, frame.index), frame)
     remembered, seen = silhouette.step(state.silhouette, frame.picture, _near_px(state, guide))
-    landmarks = _landmarks(state, frame, seen)
+    landmarks, contradicts = _landmarks(state, frame, seen)
     if _is_search(state, frame):
         state = state._replace(searched_s=frame.captured_s)
-    held = corrected(seen, landmarks, state.setup.settings.silhouette.min_height_share)
+    least_share = state.setup.settings.silhouette.min_height_share
+    held = corrected(seen, landmarks, least_share, contradicted=contradicts)
     if held.is_changed:
         remembered = silhouette.without_things(
             remembered, state.silhouette, frame.picture, held.things
@@ -248,19 +249,19 @@ def _person_of(seen: Seen, box: Box, landmarks: Landmarks | None) -> Observation
     )
 
 
-def _landmarks(state: State, frame: CapturedFrame, seen: Seen) -> Landmarks | None:
+def _landmarks(state: State, frame: CapturedFrame, seen: Seen) -> Told:
     """The joints that the picture itself shows, where the method wants them and there is time.
 
     A single view has no other to rely on: its landmarks are computed even in a hurry.
     """
     if not state.setup.method.landmarks or _is_left_out(state.setup, frame):
-        return None
+        return Told(None, contradicts=False)
     settings = state.setup.settings
     if settings.looks_itself:
         eye = LandmarkModel(network_of(settings.landmarks), state.setup.alone and not frame.hurried)
         searches = _is_search(state, frame)
         return own_landmarks(frame.picture, seen, state.landmarks, eye, searches=searches)
-    return nearest_landmarks(frame.landmarks, seen.box)
+    return Told(nearest_landmarks(frame.landmarks, seen.box), contradicts=False)
 
 
 def _is_left_out(setup: Setup, frame: CapturedFrame) -> bool:

@@ -78,6 +78,16 @@ class _Look(NamedTuple):
 SUREST: Final = attrgetter("surety")
 
 
+class Told(NamedTuple):
+    """What the network makes of a frame."""
+
+    landmarks: Landmarks | None
+    """None: it sees no person."""
+    contradicts: bool
+    """The person is seen surely without the silhouette, and not with it: that is not theirs alone,
+    or not all of theirs."""
+
+
 def own_landmarks(
     picture: Image,
     seen: Seen,
@@ -85,8 +95,8 @@ def own_landmarks(
     eye: LandmarkModel = LandmarkModel(),
     *,
     searches: bool = False,
-) -> Landmarks | None:
-    """What the network makes of a picture; None where it sees no person.
+) -> Told:
+    """What the network makes of a picture.
 
     It looks where the silhouette is, in a window as upright as the trunk was in the frame before.
     Where it is not sure there, or saw a person elsewhere the frame before, it also looks there,
@@ -112,10 +122,10 @@ def own_landmarks(
         best = _anywhere(picture, best, eye)
     best = _set_upright(picture, best, eye)
     if seen.box is None and (best.nobody > 0.5 or best.surety < LEAST):
-        return None
+        return Told(None, contradicts=False)
     if best.surety < SURE and best.nobody > EMPTY:
         best = best._replace(confidence=np.zeros_like(best.confidence), facing=(0.0, 0.0))
-    return _told(best)
+    return Told(_told(best), contradicts=best.mask is None and best.surety >= SURE)
 
 
 def found_anywhere(picture: Image, eye: LandmarkModel = TWICE) -> tuple[Landmarks, float]:

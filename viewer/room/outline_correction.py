@@ -53,18 +53,21 @@ class Corrected(NamedTuple):
     is_changed: bool
 
 
-def corrected(seen: Seen, landmarks: Landmarks | None, least_share: float) -> Corrected:
+def corrected(
+    seen: Seen, landmarks: Landmarks | None, least_share: float, *, contradicted: bool
+) -> Corrected:
     """A silhouette without what the landmarks say is no body, and with what is missing of it.
 
     Args:
         seen: The silhouette of a frame.
         landmarks: Of the same frame; None, or unsure: the silhouette stands.
         least_share: Of the picture's height; a lower silhouette is no person's.
+        contradicted: The silhouette is not the body's alone, however near: a shadow lies beside.
     """
     if not is_trusted(landmarks):
         return Corrected(seen, None, is_changed=False)
     assert landmarks is not None
-    mask, things = _without_things(seen, landmarks)
+    mask, things = _without_things(seen, landmarks, 0.0 if contradicted else MUCH)
     missing = _missing(mask, landmarks)
     if things is None and not missing:
         return Corrected(seen, None, is_changed=False)
@@ -81,13 +84,13 @@ def is_trusted(landmarks: Landmarks | None) -> bool:
     return stature_px(landmarks) > 0.0
 
 
-def _without_things(seen: Seen, landmarks: Landmarks) -> tuple[Bytes, Bytes | None]:
-    """The silhouette (H, W) without what is far from the body, and that; None if it is hardly
-    any."""
+def _without_things(seen: Seen, landmarks: Landmarks, much: float) -> tuple[Bytes, Bytes | None]:
+    """The silhouette (H, W) without what is far from the body, and that; None if it is less than
+    that share."""
     bones = [ends for ends in _ENDS.tolist() if shown(landmarks, ends)]
     mask, ends = seen.mask.view(np.uint8), np.array(landmarks.joints_px)[bones]
     share = _far_share(mask, ends, (FAR + REACH) * stature_px(landmarks))
-    if share < MUCH:
+    if share < much:
         return mask, None
     near = cv2.bitwise_and(mask, body_region(landmarks, mask.shape, TIGHT))
     return np.asarray(near), np.asarray(cv2.subtract(mask, near))
