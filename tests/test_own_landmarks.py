@@ -1,6 +1,7 @@
 """The viewer's own landmarks: found where the outline is, and where there is none."""
 
 from functools import lru_cache
+from typing import Any
 from unittest.mock import Mock
 
 import cv2
@@ -54,6 +55,10 @@ def acted() -> tuple[Shot, np.ndarray, float, Image]:
     return shot, joints_px, focal * someone.measures["stature_m"] / far_m, empty
 
 
+def landmarks_by(*given: Any) -> Landmarks | None:
+    return own_landmarks(*given).landmarks
+
+
 def seen(mask: Mask) -> Seen:
     rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
     box = Box(left=int(columns[0]), right=int(columns[-1]), top=int(rows[0]), bottom=int(rows[-1]))
@@ -76,21 +81,45 @@ def off(found: Landmarks | None) -> float:
 @pytest.mark.slow
 def test_the_joints_of_somebody_with_an_outline_are_found() -> None:
     shot = acted()[0]
-    assert off(own_landmarks(shot.frames[0], seen(shot.masks[0]), None)) < 0.03
+    assert off(landmarks_by(shot.frames[0], seen(shot.masks[0]), None)) < 0.03
 
 
 def test_somebody_without_an_outline_is_found_in_all_of_the_picture() -> None:
-    assert off(own_landmarks(acted()[0].frames[0], nobody(), None)) < 0.05
+    assert off(landmarks_by(acted()[0].frames[0], nobody(), None)) < 0.05
 
 
 def test_an_outline_that_is_elsewhere_does_not_lead_astray() -> None:
     wrong = np.zeros((240, 320), np.bool_)
     wrong[60:200, 5:50] = True
-    assert off(own_landmarks(acted()[0].frames[0], seen(wrong), None)) < 0.05
+    assert off(landmarks_by(acted()[0].frames[0], seen(wrong), None)) < 0.05
+
+
+def upper_half() -> Seen:
+    """Of the person's silhouette; the legs, which do not move, were learnt with the background."""
+    mask = acted()[0].masks[0].copy()
+    rows = np.flatnonzero(mask.any(axis=1))
+    mask[(rows[0] + rows[-1]) // 2 :] = False
+    return seen(mask)
+
+
+def test_a_person_whose_legs_did_not_move_is_found_whole_in_the_whole_picture() -> None:
+    told = own_landmarks(acted()[0].frames[0], upper_half(), None, searches=True)
+    assert told.landmarks is not None
+    joints_px = np.array(told.landmarks.joints_px)
+    apart = np.linalg.norm(joints_px - acted()[1], axis=1) / acted()[2]
+    ankles = [JOINT_NAMES.index(name) for name in ("l_ankle", "r_ankle")]
+    assert apart[ankles].max() < 0.05
+    assert told.contradicts
+
+
+def test_the_true_silhouette_is_not_contradicted() -> None:
+    picture, mask = acted()[0].frames[0], acted()[0].masks[0]
+    known = landmarks_by(picture, seen(mask), None)
+    assert not own_landmarks(picture, seen(mask), known, searches=True).contradicts
 
 
 def test_in_an_empty_room_nobody_is_seen() -> None:
-    assert own_landmarks(acted()[3], nobody(), None) is None
+    assert landmarks_by(acted()[3], nobody(), None) is None
 
 
 def test_an_outline_of_which_the_picture_shows_nobody_has_landmarks_that_are_not_sure_at_all() -> (
@@ -101,14 +130,14 @@ def test_an_outline_of_which_the_picture_shows_nobody_has_landmarks_that_are_not
     cv2.rectangle(door, (200, 40), (250, 190), (60, 90, 130), cv2.FILLED)
     mask = np.zeros((240, 320), np.bool_)
     mask[40:190, 200:250] = True
-    found = own_landmarks(door, seen(mask), None)
+    found = landmarks_by(door, seen(mask), None)
     assert found is not None
     assert (max(found.confidence), found.facing_confidence) == (0.0, 0.0)
 
 
 def test_whoever_faces_the_camera_is_told_to() -> None:
     shot = acted()[0]
-    found = own_landmarks(shot.frames[0], seen(shot.masks[0]), None)
+    found = landmarks_by(shot.frames[0], seen(shot.masks[0]), None)
     assert found is not None
     assert abs(found.facing_deg) < 45
     assert found.facing_confidence > 0.5
@@ -119,7 +148,7 @@ def test_a_grey_and_tiny_picture_is_looked_at_too() -> None:
     small = cv2.resize(shot.frames[0], (160, 120), interpolation=cv2.INTER_AREA)
     grey = cv2.cvtColor(cv2.cvtColor(small, cv2.COLOR_BGR2GRAY), cv2.COLOR_GRAY2BGR)
     mask = cv2.resize(shot.masks[0].astype(np.uint8), (160, 120)) > 0
-    found = own_landmarks(np.asarray(grey, np.uint8), seen(mask), None)
+    found = landmarks_by(np.asarray(grey, np.uint8), seen(mask), None)
     assert found is not None
     apart = np.linalg.norm(2 * np.array(found.joints_px) - joints_px, axis=1) / stature_px
     assert np.median(apart) == pytest.approx(0.0, abs=0.04)
@@ -142,7 +171,7 @@ def test_whoever_lies_or_stands_on_their_hands_is_found_as_well(
     found = None
     for more in (4, 1):
         looks.reset_mock()
-        found = own_landmarks(picture, outline, found)
+        found = landmarks_by(picture, outline, found)
         assert found is not None
         off_px = np.linalg.norm(np.array(found.joints_px) - joints_px, axis=1)
         assert np.median(off_px) < 0.03 * stature_px
@@ -155,7 +184,7 @@ def test_who_seemed_to_lie_and_stands_is_looked_at_upright_again() -> None:
     shot, joints_px, _, _ = acted()
     wrong = np.stack([joints_px[:, 1] + 40.0, joints_px[:, 0]], axis=1)
     before = Landmarks(tuple((x, y) for x, y in wrong.tolist()), (0.9,) * 15)
-    found = own_landmarks(shot.frames[0], seen(shot.masks[0]), before)
+    found = landmarks_by(shot.frames[0], seen(shot.masks[0]), before)
     assert off(found) < 0.03
 
 
@@ -200,7 +229,7 @@ def lying() -> np.ndarray:
 
 def test_a_sure_look_at_the_outline_is_enough(monkeypatch: pytest.MonkeyPatch) -> None:
     looks = Looks(monkeypatch, looked(0.5))
-    found = own_landmarks(PICTURE, seen(BOXED), None, LandmarkModel(SHIPPED, twice=True))
+    found = landmarks_by(PICTURE, seen(BOXED), None, LandmarkModel(SHIPPED, twice=True))
     window = window_of(Box(left=100, right=159, top=60, bottom=199))
     assert looks.shown == [(window, True)]
     assert looks.eyes == [(SHIPPED, True)]
@@ -212,13 +241,47 @@ def test_a_sure_look_at_the_outline_is_enough(monkeypatch: pytest.MonkeyPatch) -
     assert (found.facing_deg, found.facing_confidence) == (12.0, 0.7)
 
 
+def test_a_silhouette_elsewhere_than_the_person_of_before_is_looked_at_and_that_place_too(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The surer of both is taken; taken without the silhouette, that is contradicted."""
+    before = Landmarks(tuple((200.0 + i, 90.0 + 9 * i) for i in range(15)), (0.9,) * 15)
+    known = _about(np.array(before.joints_px), before.confidence)
+    for sures, taken, contradicts in (((0.6, 0.7), 0.7, True), ((0.7, 0.6), 0.7, False)):
+        looks = Looks(monkeypatch, *[looked(sure) for sure in sures])
+        told = own_landmarks(PICTURE, seen(BOXED), before)
+        assert [is_masked for _, is_masked in looks.shown] == [True, False]
+        assert looks.shown[1][0] == known
+        assert told.landmarks is not None
+        assert told.landmarks.confidence[0] == taken
+        assert told.contradicts is contradicts
+
+
+def test_a_search_looks_closer_only_where_it_finds_another_place(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    window = window_of(Box(left=100, right=159, top=60, bottom=199))
+    inside_px = np.linspace((104.0, 67.0), (156.0, 193.0), 15)
+    there = (inside_px - np.array([WHOLE.left, WHOLE.top])) * (192 / WHOLE.side)
+    looks = Looks(monkeypatch, looked(0.6), looked(0.9, joints=there))
+    told = own_landmarks(PICTURE, seen(BOXED), None, searches=True)
+    assert [shown for shown, _ in looks.shown] == [window, WHOLE]
+    assert told.landmarks is not None
+    assert told.landmarks.confidence[0] == 0.6
+    looks = Looks(monkeypatch, looked(0.6), looked(0.3, joints=there + 60.0), looked(0.8))
+    told = own_landmarks(PICTURE, seen(BOXED), None, searches=True)
+    assert [is_masked for _, is_masked in looks.shown] == [True, False, False]
+    assert told.landmarks is not None
+    assert told.landmarks.confidence[0] == 0.8
+
+
 @pytest.mark.parametrize(("first", "best"), [(0.49, 0.6), (0.49, 0.3)])
 def test_an_unsure_look_is_held_against_all_of_the_picture(
     monkeypatch: pytest.MonkeyPatch, first: float, best: float
 ) -> None:
     """First whole, then closer, without the outline; the surest is believed."""
     looks = Looks(monkeypatch, looked(first), looked(0.4), looked(best))
-    found = own_landmarks(PICTURE, seen(BOXED), None)
+    found = landmarks_by(PICTURE, seen(BOXED), None)
     closer = window_about(WHOLE.in_picture(UPRIGHT), 0.0, 0.06)
     assert looks.shown[1:] == [(WHOLE, False), (closer, False)]
     assert found is not None
@@ -229,7 +292,7 @@ def test_who_is_not_found_in_all_of_the_picture_is_not_looked_at_closer(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     looks = Looks(monkeypatch, looked(0.1))
-    assert own_landmarks(PICTURE, nobody(), None) is None
+    assert landmarks_by(PICTURE, nobody(), None) is None
     assert looks.shown == [(WHOLE, False)]
 
 
@@ -242,7 +305,7 @@ def test_without_an_outline_somebody_must_be_sure_and_likely(
 ) -> None:
     before = Landmarks(tuple((150.0 + i, 90.0 + 3 * i) for i in range(15)), (0.9,) * 15)
     looks = Looks(monkeypatch, looked(sure, empty))
-    found = own_landmarks(PICTURE, nobody(), before)
+    found = landmarks_by(PICTURE, nobody(), before)
     assert (found is not None) == there
     known = _about(np.array(before.joints_px), before.confidence)
     assert looks.shown == [(known, False)]
@@ -255,7 +318,7 @@ def test_an_outline_of_nobody_has_no_sure_joints(
     monkeypatch: pytest.MonkeyPatch, sure: float, empty: float, kept: float
 ) -> None:
     Looks(monkeypatch, looked(sure, empty), looked(0.01))
-    found = own_landmarks(PICTURE, seen(BOXED), None)
+    found = landmarks_by(PICTURE, seen(BOXED), None)
     assert found is not None
     assert found.confidence == (kept,) * 15
     assert (found.facing_deg, found.facing_confidence) == ((12.0, 0.7) if kept else (0.0, 0.0))
@@ -266,7 +329,7 @@ def test_a_trunk_that_leans_in_its_window_is_looked_at_again_upright(
 ) -> None:
     """The head is to the right: the window is turned clockwise, about the outline."""
     looks = Looks(monkeypatch, looked(0.6, joints=lying()), looked(0.7, joints=lying()))
-    found = own_landmarks(PICTURE, seen(BOXED), None)
+    found = landmarks_by(PICTURE, seen(BOXED), None)
     (_, (window, outlined)) = looks.shown
     assert window.turn_deg == pytest.approx(90.0)
     assert outlined
@@ -274,13 +337,13 @@ def test_a_trunk_that_leans_in_its_window_is_looked_at_again_upright(
     assert found is not None
     assert found.confidence[0] == 0.7
     looks = Looks(monkeypatch, looked(0.6, joints=lying()), looked(0.55))
-    found = own_landmarks(PICTURE, seen(BOXED), None)
+    found = landmarks_by(PICTURE, seen(BOXED), None)
     assert found is not None
     assert found.confidence[0] == 0.6
 
 
 def before_lying() -> Landmarks:
-    places = Window(60, 60, 96).in_picture(lying())
+    places = Window(20, 20, 218).in_picture(lying())
     return Landmarks(tuple((float(x), float(y)) for x, y in places), (0.9,) * 15)
 
 
@@ -293,11 +356,21 @@ def test_who_lay_is_looked_at_as_they_lay_and_upright_where_that_shows_nobody(
 ) -> None:
     """The outline in the turned window, the place of before, the outline as the picture stands."""
     looks = Looks(monkeypatch, *[looked(sure) for sure in sures])
-    found = own_landmarks(PICTURE, seen(BOXED), before_lying())
+    found = landmarks_by(PICTURE, seen(BOXED), before_lying())
     assert [window.turn_deg for window, _ in looks.shown] == pytest.approx(turns)
     assert [outlined for _, outlined in looks.shown] == [True, False, True][: len(turns)]
     assert found is not None
     assert found.confidence[0] == max(sures)
+
+
+@pytest.mark.parametrize(("sure", "turns_deg"), [(0.19, [0.0, 90.0, 180.0, 270.0]), (0.2, [0.0])])
+def test_an_unsure_look_at_an_unknown_person_is_repeated_in_turned_windows(
+    monkeypatch: pytest.MonkeyPatch, sure: float, turns_deg: list[float]
+) -> None:
+    looks = Looks(monkeypatch, *[looked(each) for each in (sure, 0.1, 0.3, 0.2)])
+    found, _ = found_between(PICTURE, np.array([[100.0, 50.0], [130.0, 170.0]]), 0.2)
+    assert [window.turn_deg for window, _ in looks.shown][:4] == turns_deg
+    assert found.confidence[0] == (0.3 if sure < 0.2 else 0.2)
 
 
 def test_pictures_of_which_nothing_is_known_are_looked_at_in_the_mirror_too(

@@ -19,6 +19,7 @@ from viewer.background import moved_camera
 from viewer.background.background import Background, learn
 from viewer.background.moved_objects import Patch
 from viewer.captured_frame import CapturedFrame
+from viewer.landmarks import landmark_step
 from viewer.room.outline_correction import Corrected
 from viewer.silhouette import silhouette
 from viewer.silhouette.silhouette import Seen
@@ -102,7 +103,8 @@ def test_before_another_background_nothing_of_the_old_one_is_kept_but_how_it_was
     turn = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
     begun = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
     state = state._replace(
-        moved=state.moved._replace(turn=turn, begun=begun), landmarks=landmarks(0.9)
+        moved=state.moved._replace(turn=turn, begun=begun),
+        landmarks=landmark_step.State(landmarks(0.9)),
     )
     new = room(140)
     found = track.with_background(state, new)
@@ -133,7 +135,7 @@ def test_patches_are_laid_on_the_background_when_they_are_due() -> None:
 
 
 @pytest.mark.parametrize(
-    ("sure", "known", "alone", "near_px"),
+    ("sure", "guided", "alone", "near_px"),
     [
         (0.9, True, True, (20.0 + PELVIS, 5.0 + 3.0 * PELVIS)),
         (0.1, True, True, (41.0, 32.0)),
@@ -144,12 +146,13 @@ def test_patches_are_laid_on_the_background_when_they_are_due() -> None:
     ],
 )
 def test_the_body_is_expected_where_its_joints_were_where_the_guide_has_it_or_where_it_was(
-    sure: float | None, known: bool, alone: bool, near_px: tuple[float, float] | None
+    sure: float | None, guided: bool, alone: bool, near_px: tuple[float, float] | None
 ) -> None:
     """The pelvis of sure landmarks, this viewer's half of the guide, the only view's last box."""
     state = track.init(setup(alone=alone), room())._replace(near_px=(7.0, 8.0))
-    state = state._replace(landmarks=None if sure is None else landmarks(sure))
-    assert track._near_px(state, guide() if known else None) == near_px
+    known = landmark_step.State(None if sure is None else landmarks(sure))
+    state = state._replace(landmarks=known)
+    assert track._near_px(state, guide() if guided else None) == near_px
 
 
 def test_a_report_tells_what_the_silhouette_shows_and_when() -> None:
@@ -197,8 +200,10 @@ class Stages:
             self.told["near_px"] = near_px
             return state._replace(frames=state.frames + 5), self.seen
 
-        def corrected(seen: Seen, landmarks: Any, least_share: float) -> Corrected:
-            self.told["corrected"] = (seen, landmarks, least_share)
+        def corrected(
+            seen: Seen, landmarks: Any, least_share: float, *, contradicted: bool
+        ) -> Corrected:
+            self.told["corrected"] = (seen, landmarks, least_share, contradicted)
             if not things:
                 return Corrected(seen, None, is_changed=False)
             return Corrected(self.less, self.things, is_changed=True)
@@ -221,7 +226,7 @@ def test_a_frame_is_cut_out_held_against_its_landmarks_and_remembered(
     state = track.init(setup(), room())
     found, report, mask = track.look(state, frame(), guide())
     assert stages.told["near_px"] == (41.0, 32.0)
-    assert stages.told["corrected"] == (stages.seen, None, 0.15)
+    assert stages.told["corrected"] == (stages.seen, None, 0.15, False)
     assert "without" not in stages.told
     person = person_of(report)
     assert (person.area_px, report.fault, person.landmarks) == (400, "", None)
@@ -255,7 +260,7 @@ def test_a_camera_that_was_moved_looks_before_its_background_as_it_is_turned(
     state = track.init(setup(), room())
     still = state.moved
     assert still is not None
-    state = state._replace(landmarks=landmarks(0.9), near_px=(7.0, 8.0))
+    state = state._replace(landmarks=landmark_step.State(landmarks(0.9)), near_px=(7.0, 8.0))
     angle = np.radians(3.0)
     turn = np.array(
         [[np.cos(angle), 0, np.sin(angle)], [0, 1, 0], [-np.sin(angle), 0, np.cos(angle)]]
@@ -274,7 +279,7 @@ def test_a_camera_that_was_moved_looks_before_its_background_as_it_is_turned(
     found = track._followed(state, shown)
     assert told == [(moved.first, moved.lens, turn, shown.picture)]
     assert found.silhouette.background is new
-    assert (found.landmarks, found.near_px, found.moved) == (None, None, moved)
+    assert (found.landmarks.known, found.near_px, found.moved) == (None, None, moved)
     monkeypatch.setattr(moved_camera, "step", lambda *_: (moved, False))
     found = track._followed(state, shown)
     assert found == state._replace(moved=moved)

@@ -53,6 +53,6 @@ def test_who_was_seen_before_is_remembered_where_landmarks_are_looked_for(
 ) -> None:
     clip = clip_of(1, 2)
     state = viewer_of(clip.views[0], clip, Settings(), method, EMPTY, SOMEBODY)
-    assert state.landmarks == kept
+    assert state.landmarks.known == kept
     assert state.setup.method is method
-    assert viewer_of(clip.views[0], clip, Settings(), method, EMPTY).landmarks is None
+    assert viewer_of(clip.views[0], clip, Settings(), method, EMPTY).landmarks.known is None

@@ -39,6 +39,8 @@ from common.rig.camera import project
 from viewer import track
 from viewer.background.background import learn
 from viewer.captured_frame import CapturedFrame
+from viewer.landmarks import landmark_step
+from viewer.landmarks.own_landmarks import Told
 from viewer.paper import pose_search
 
 
@@ -330,7 +332,7 @@ def test_what_a_source_outside_sees_is_told_of_who_is_there_and_stays(seen: bool
     for told in (None, guide(standing())):
         after, view = track.step(state, shown, told)
         assert landmarks_in(view) == person
-        assert after.landmarks == person
+        assert after.landmarks.known == person
     assert landmarks_in(track.step(state, picture, None)[1]) is None
 
 
@@ -349,11 +351,11 @@ def looks_of(monkeypatch: pytest.MonkeyPatch, alone: bool) -> tuple[track.State,
     that was in the mirror too."""
     looks: list[bool] = []
 
-    def look(*given: Any) -> Landmarks:
+    def look(*given: Any, **_: Any) -> Told:
         looks.append(given[3].twice)
-        return landmarks_of(standing())
+        return Told(landmarks_of(standing()), contradicts=False)
 
-    monkeypatch.setattr(track, "own_landmarks", look)
+    monkeypatch.setattr(landmark_step, "own_landmarks", look)
     setup = told_from_outside().setup
     settings = msgspec.structs.replace(setup.settings, landmarks="own")
     return viewer(1)._replace(setup=setup._replace(settings=settings, alone=alone)), looks
@@ -371,7 +373,7 @@ def test_in_a_hurry_one_of_two_views_tells_its_outline_alone_and_remembers_who_i
     one, other = person_of(first), person_of(second)
     assert (one.landmarks, other.landmarks) == (landmarks_of(standing()), None)
     assert other.silhouette == one.silhouette
-    assert state.landmarks == one.landmarks
+    assert state.landmarks.known == one.landmarks
 
 
 def test_in_a_hurry_an_only_view_is_looked_at_but_not_in_the_mirror(
@@ -415,7 +417,7 @@ def test_who_is_in_the_first_frame_is_known_where_landmarks_are_asked_for(
     setup = viewer(1).setup._replace(method=method)
     somebody = landmarks_of(standing())
     state = track.init(setup, learn([np.zeros((240, 320, 3), np.uint8)]), somebody=somebody)
-    assert (state.landmarks == somebody) == known
+    assert (state.landmarks.known == somebody) == known
 
 
 @pytest.mark.parametrize(

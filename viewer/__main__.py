@@ -29,6 +29,7 @@ from viewer.background.background import Background
 from viewer.background.new_background import Learning
 from viewer.capture import Live, RoomClock
 from viewer.captured_frame import CapturedFrame
+from viewer.landmarks import landmark_step
 from viewer.landmarks.landmark_sources import outside_sources
 from viewer.load_shedding import LoadShedder
 from viewer.resend_buffer import ResendBuffer
@@ -192,7 +193,9 @@ def main(
             if room_clock is not None:
                 if time.monotonic() + room_clock.offset_s > room_clock.start_s:
                     # after a restart its clip goes on
-                    prepared = prepared._replace(state=state._replace(landmarks=None))
+                    prepared = prepared._replace(
+                        state=state._replace(landmarks=landmark_step.State())
+                    )
                 with (
                     Live(
                         view, settings.every, room_clock, sources.get(viewer), decoder=decoder

@@ -1,6 +1,5 @@
 """One viewer's step: the stages of section 3 in their order."""
 
-import math
 from collections.abc import Sequence
 from typing import Final, NamedTuple
 
@@ -22,9 +21,8 @@ from viewer.background.moved_objects import Patch
 from viewer.background.turned_picture import lens_of, turned_background
 from viewer.captured_frame import CapturedFrame
 from viewer.expected_body import expected_body
-from viewer.landmarks.landmark_looks import network_of
-from viewer.landmarks.outside_source import nearest_landmarks
-from viewer.landmarks.own_landmarks import LandmarkModel, Told, own_landmarks
+from viewer.landmarks import landmark_step
+from viewer.landmarks.own_landmarks import Told
 from viewer.paper import pose_search
 from viewer.paper.measure import opening_measure
 from viewer.room.outline_correction import corrected, is_trusted
@@ -33,8 +31,6 @@ from viewer.silhouette.silhouette import Seen
 from viewer.stick.standing_height import Standing
 from viewer.stick.stick_report import with_stick
 
-SEARCH_S: Final = 0.5
-"""Time between two looks at all of the picture, beside those where a person is known."""
 PELVIS: Final = JOINT_NAMES.index("pelvis")
 
 
@@ -69,10 +65,7 @@ class State(NamedTuple):
     search: pose_search.State
     standing: Standing | None
     """Height of the standing person; None: not known before."""
-    landmarks: Landmarks | None = None
-    """Those of the last processed frame."""
-    searched_s: float = -math.inf
-    """Capture time of the last frame whose whole picture was searched for people."""
+    landmarks: landmark_step.State = landmark_step.State()
     near_px: Pixel | None = None
     """Middle of the last silhouette, for frames without a guide's prediction."""
     moved: moved_camera.State | None = None
@@ -104,7 +97,7 @@ def init(
         tuple(patches),
         pose_search.init(setup.viewer, setup.camera, setup.settings.search, setup.method),
         standing,
-        somebody if setup.method.landmarks else None,
+        landmark_step.State(somebody if setup.method.landmarks else None),
         moved=_watched(setup, background, None),
     )
 
@@ -160,22 +153,20 @@ def look(state: State, frame: CapturedFrame, guide: Guide | None) -> tuple[State
         return state, msgspec.structs.replace(view, fault=fault), mask_of(view)
     state = _followed(_patched(state, frame.index), frame)
     remembered, seen = silhouette.step(state.silhouette, frame.picture, _near_px(state, guide))
-    landmarks, contradicts = _landmarks(state, frame, seen)
-    if _is_search(state, frame):
-        state = state._replace(searched_s=frame.captured_s)
-    least_share = state.setup.settings.silhouette.min_height_share
-    held = corrected(seen, landmarks, least_share, contradicted=contradicts)
+    setup, known, told = state.setup, state.landmarks, Told(None, contradicts=False)
+    if setup.method.landmarks:
+        known, told = landmark_step.step(known, frame, seen, setup.settings, alone=setup.alone)
+    least_share = setup.settings.silhouette.min_height_share
+    held = corrected(seen, told.landmarks, least_share, contradicted=told.contradicts)
     if held.is_changed:
         remembered = silhouette.without_things(
             remembered, state.silhouette, frame.picture, held.things
         )
     seen = held.seen
-    view = _view_of(state.setup.viewer, frame, seen, landmarks)
+    view = _view_of(setup.viewer, frame, seen, told.landmarks)
     if state.moved is not None:
         view = msgspec.structs.replace(view, shift=state.moved.shift)
-    if _is_left_out(state.setup, frame):
-        landmarks = state.landmarks
-    state = state._replace(silhouette=remembered, near_px=_middle_px(seen.box), landmarks=landmarks)
+    state = state._replace(silhouette=remembered, near_px=_middle_px(seen.box), landmarks=known)
     return state, view, seen.mask
 
 
@@ -249,31 +240,6 @@ def _person_of(seen: Seen, box: Box, landmarks: Landmarks | None) -> Observation
     )
 
 
-def _landmarks(state: State, frame: CapturedFrame, seen: Seen) -> Told:
-    """The joints that the picture itself shows, where the method wants them and there is time.
-
-    A single view has no other to rely on: its landmarks are computed even in a hurry.
-    """
-    if not state.setup.method.landmarks or _is_left_out(state.setup, frame):
-        return Told(None, contradicts=False)
-    settings = state.setup.settings
-    if settings.looks_itself:
-        eye = LandmarkModel(network_of(settings.landmarks), state.setup.alone and not frame.hurried)
-        searches = _is_search(state, frame)
-        return own_landmarks(frame.picture, seen, state.landmarks, eye, searches=searches)
-    return Told(nearest_landmarks(frame.landmarks, seen.box), contradicts=False)
-
-
-def _is_left_out(setup: Setup, frame: CapturedFrame) -> bool:
-    """Whether the landmarks of a frame are skipped."""
-    return frame.hurried and not setup.alone and setup.settings.looks_itself
-
-
-def _is_search(state: State, frame: CapturedFrame) -> bool:
-    """Whether all of the picture is looked at for people, whatever is known."""
-    return not frame.hurried and frame.captured_s >= state.searched_s + SEARCH_S
-
-
 def _followed(state: State, frame: CapturedFrame) -> State:
     """The state with the background as seen after the camera was moved."""
     if state.moved is None:
@@ -285,7 +251,7 @@ def _followed(state: State, frame: CapturedFrame) -> State:
     return state._replace(
         moved=moved,
         silhouette=silhouette.before(state.silhouette, background),
-        landmarks=None,
+        landmarks=landmark_step.State(),
         near_px=None,
     )
 
@@ -300,8 +266,9 @@ def _patched(state: State, index: int) -> State:
 
 def _near_px(state: State, guide: Guide | None) -> Pixel | None:
     """The body's expected place: at its landmarks, by the guide, or in a single view its last."""
-    if state.landmarks is not None and is_trusted(state.landmarks):
-        return state.landmarks.joints_px[PELVIS]
+    landmarks = state.landmarks.known
+    if landmarks is not None and is_trusted(landmarks):
+        return landmarks.joints_px[PELVIS]
     known = expected_body(guide, state.setup.viewer)
     if known is not None:
         return known.root_px

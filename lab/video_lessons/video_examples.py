@@ -91,8 +91,8 @@ def _examples(film: Path, teacher: str, tell: Tell) -> Iterator[PictureExample]:
             for frame in recorded(view, every, decoder, sources[1]):
                 state, seen, mask = track.look(state, frame, None)
                 tell(frame.index / max(view.frames, 1))
-                if state.landmarks is not None and not seen.fault:
-                    yield from example_of(frame.picture, mask, state.landmarks, rng)
+                if state.landmarks.known is not None and not seen.fault:
+                    yield from example_of(frame.picture, mask, state.landmarks.known, rng)
 
 
 def example_of(
