@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import JOINT_NAMES
-from common.bus.messages import Landmarks
+from common.body.observation import Landmarks
 from common.video.pictures import Image
 from viewer.landmarks.landmark_looks import SHIPPED
 from viewer.landmarks.own_landmarks import LandmarkModel, found_anywhere, found_between
