@@ -8,6 +8,7 @@ from test_own_landmarks import acted, nobody, seen
 
 from common.body.observation import Landmarks
 from common.raster.similarity import Mask
+from viewer.landmarks.own_landmarks import Told
 from viewer.room.outline_correction import _covered, _distance_2, _far_share, corrected
 
 
@@ -38,14 +39,14 @@ def without_legs() -> tuple[Mask, Mask]:
 
 def test_a_whole_outline_stays_as_it_is() -> None:
     own = seen(acted()[0].masks[0])
-    held = corrected(own, true_landmarks(), 0.15, contradicted=False)
+    held = corrected(own, Told(true_landmarks()), 0.15)
     assert held.seen is own
     assert not held.is_changed
 
 
 def test_a_door_goes_and_is_told_to_be_a_thing() -> None:
     cluttered, mask = with_door()
-    held = corrected(seen(cluttered), true_landmarks(), 0.15, contradicted=False)
+    held = corrected(seen(cluttered), Told(true_landmarks()), 0.15)
     assert iou(held.seen.mask, mask) > 0.9 > iou(cluttered, mask)
     assert held.things is not None
     assert held.things[100, 20] == 1
@@ -57,15 +58,15 @@ def test_a_shadow_beside_the_body_goes_where_the_picture_contradicts_the_silhoue
     mask = acted()[0].masks[0]
     shaded = mask | np.roll(mask, round(0.2 * acted()[2]), axis=1)
     own = seen(shaded)
-    assert not corrected(own, true_landmarks(), 0.15, contradicted=False).is_changed
-    held = corrected(own, true_landmarks(), 0.15, contradicted=True)
+    assert not corrected(own, Told(true_landmarks()), 0.15).is_changed
+    held = corrected(own, Told(true_landmarks()), 0.15)
     assert iou(held.seen.mask, mask) > iou(shaded, mask) + 0.15
     assert held.things is not None
 
 
 def test_legs_of_the_floors_colour_come() -> None:
     ragged, mask = without_legs()
-    held = corrected(seen(ragged), true_landmarks(), 0.15, contradicted=False)
+    held = corrected(seen(ragged), Told(true_landmarks()), 0.15)
     assert iou(held.seen.mask, mask) > 0.75 > iou(ragged, mask)
     assert held.seen.box is not None
     assert held.things is None
@@ -73,27 +74,25 @@ def test_legs_of_the_floors_colour_come() -> None:
 
 def test_somebody_of_the_walls_colour_gets_an_outline() -> None:
     mask = acted()[0].masks[0]
-    held = corrected(nobody(), true_landmarks(), 0.15, contradicted=False)
+    held = corrected(nobody(), Told(true_landmarks()), 0.15)
     assert iou(held.seen.mask, mask) > 0.6
 
 
 def test_unsure_landmarks_change_nothing() -> None:
     for mask, _ in (with_door(), without_legs()):
-        assert not corrected(seen(mask), unsure(), 0.15, contradicted=False).is_changed
-    assert not corrected(seen(mask), None, 0.15, contradicted=False).is_changed
+        assert not corrected(seen(mask), Told(unsure()), 0.15).is_changed
+    assert not corrected(seen(mask), Told(None), 0.15).is_changed
 
 
 def test_a_door_goes_though_no_ankle_is_seen() -> None:
     cluttered, mask = with_door()
-    held = corrected(seen(cluttered), without("l_ankle", "r_ankle"), 0.15, contradicted=False)
+    held = corrected(seen(cluttered), Told(without("l_ankle", "r_ankle")), 0.15)
     assert iou(held.seen.mask, mask) > 0.85 > iou(cluttered, mask)
 
 
 def test_landmarks_that_tell_no_size_overrule_nothing() -> None:
     own = seen(with_door()[0])
-    assert (
-        corrected(own, without("pelvis", "l_knee", "r_knee"), 0.15, contradicted=False).seen is own
-    )
+    assert corrected(own, Told(without("pelvis", "l_knee", "r_knee")), 0.15).seen is own
 
 
 def plain_distance(x: float, y: float, ends: np.ndarray) -> float:

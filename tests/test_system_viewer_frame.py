@@ -20,6 +20,7 @@ from viewer.background.background import Background, learn
 from viewer.background.moved_objects import Patch
 from viewer.captured_frame import CapturedFrame
 from viewer.landmarks import landmark_step
+from viewer.landmarks.own_landmarks import Told
 from viewer.room.outline_correction import Corrected
 from viewer.silhouette import silhouette
 from viewer.silhouette.silhouette import Seen
@@ -200,10 +201,8 @@ class Stages:
             self.told["near_px"] = near_px
             return state._replace(frames=state.frames + 5), self.seen
 
-        def corrected(
-            seen: Seen, landmarks: Any, least_share: float, *, contradicted: bool
-        ) -> Corrected:
-            self.told["corrected"] = (seen, landmarks, least_share, contradicted)
+        def corrected(seen: Seen, told: Told, least_share: float) -> Corrected:
+            self.told["corrected"] = (seen, told.landmarks, least_share)
             if not things:
                 return Corrected(seen, None, is_changed=False)
             return Corrected(self.less, self.things, is_changed=True)
@@ -226,7 +225,7 @@ def test_a_frame_is_cut_out_held_against_its_landmarks_and_remembered(
     state = track.init(setup(), room())
     found, report, mask = track.look(state, frame(), guide())
     assert stages.told["near_px"] == (41.0, 32.0)
-    assert stages.told["corrected"] == (stages.seen, None, 0.15, False)
+    assert stages.told["corrected"] == (stages.seen, None, 0.15)
     assert "without" not in stages.told
     person = person_of(report)
     assert (person.area_px, report.fault, person.landmarks) == (400, "", None)

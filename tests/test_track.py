@@ -353,7 +353,7 @@ def looks_of(monkeypatch: pytest.MonkeyPatch, alone: bool) -> tuple[track.State,
 
     def look(*given: Any, **_: Any) -> Told:
         looks.append(given[3].twice)
-        return Told(landmarks_of(standing()), contradicts=False)
+        return Told(landmarks_of(standing()))
 
     monkeypatch.setattr(landmark_step, "own_landmarks", look)
     setup = told_from_outside().setup

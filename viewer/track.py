@@ -153,11 +153,11 @@ def look(state: State, frame: CapturedFrame, guide: Guide | None) -> tuple[State
         return state, msgspec.structs.replace(view, fault=fault), mask_of(view)
     state = _followed(_patched(state, frame.index), frame)
     remembered, seen = silhouette.step(state.silhouette, frame.picture, _near_px(state, guide))
-    setup, known, told = state.setup, state.landmarks, Told(None, contradicts=False)
+    setup, known, told = state.setup, state.landmarks, Told(None)
     if setup.method.landmarks:
         known, told = landmark_step.step(known, frame, seen, setup.settings, alone=setup.alone)
     least_share = setup.settings.silhouette.min_height_share
-    held = corrected(seen, told.landmarks, least_share, contradicted=told.contradicts)
+    held = corrected(seen, told, least_share)
     if held.is_changed:
         remembered = silhouette.without_things(
             remembered, state.silhouette, frame.picture, held.things

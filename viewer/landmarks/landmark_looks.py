@@ -24,8 +24,11 @@ OWN: Final = "own"
 SHIPPED: Final = Path(__file__).with_name("landmarks.onnx")
 LEAST: Final = 1e-12
 """Of a share of a map, where two looks are joined."""
-Seen = tuple[NDArray[np.float32], NDArray[np.float32]]
-"""Logits of a look: maps (15, CELLS, CELLS), and the other outputs (BINS + 1 + 15,)."""
+OUTPUTS: Final = ("maps", "told", "mask")
+Logits = NDArray[np.float32]
+Seen = tuple[Logits, Logits, Logits]
+"""Logits of a look: maps (15, CELLS, CELLS), the outputs of no place (BINS + 1 + 15,), and the
+person's mask (CELLS, CELLS)."""
 
 
 @lru_cache(maxsize=4)
@@ -58,20 +61,23 @@ def refuse_no_network(landmarks: str) -> None:
         SettingsError: With its name.
     """
     try:
-        (taken,) = opened(network_of(landmarks)).get_inputs()
+        session = opened(network_of(landmarks))
+        (taken,) = session.get_inputs()
         known = (taken.name, taken.shape) == ("planes", [1, PLANES, SIDE, SIDE])
+        known &= tuple(each.name for each in session.get_outputs()) == OUTPUTS
     except Exception as error:  # whatever keeps a foreign file from its work is for the user
         raise SettingsError(f"{landmarks} is no network: {error}") from error
     if not known or taken.type != "tensor(uint8)":
         raise SettingsError(
-            f"{landmarks} is no network of landmarks: tritrack train --what landmarks writes one"
+            f"{landmarks} is no network of landmarks of this version: "
+            "tritrack train --what landmarks writes one"
         )
 
 
 def seen(planes: Planes, network: Path) -> Seen:
     """What a network says of a window, (1, PLANES, SIDE, SIDE)."""
-    maps, told = opened(network).run(None, {"planes": planes})
-    return maps[0], told[0]
+    maps, told, mask = opened(network).run(None, {"planes": planes})
+    return maps[0], told[0], mask[0]
 
 
 def seen_twice(planes: Planes, network: Path) -> Seen:
@@ -80,21 +86,21 @@ def seen_twice(planes: Planes, network: Path) -> Seen:
     return _joined(seen(planes, network), _turned(*seen(mirrored, network)))
 
 
-def _turned(maps: NDArray[np.float32], told: NDArray[np.float32]) -> Seen:
+def _turned(maps: Logits, told: Logits, mask: Logits) -> Seen:
     """What was seen in the mirror, as it is before it: left is right there."""
     bins, nobody, sure = np.split(told, (BINS, BINS + 1))
     own = bins[-np.arange(BINS) % BINS], nobody, sure[OTHER_SIDE]
-    return maps[OTHER_SIDE][..., ::-1], np.concatenate(own)
+    return maps[OTHER_SIDE][..., ::-1], np.concatenate(own), mask[..., ::-1]
 
 
 def _joined(first: Seen, second: Seen) -> Seen:
     """Two looks as one: the mean of the shares of maps, and of the logits of all else."""
-    shares = [np.exp(maps - _total(maps)) for maps, _ in (first, second)]
+    shares = [np.exp(maps - _total(maps)) for maps, _, _ in (first, second)]
     maps = np.log(np.maximum(0.5 * (shares[0] + shares[1]), np.float32(LEAST)))
-    return maps, 0.5 * (first[1] + second[1])
+    return maps, 0.5 * (first[1] + second[1]), 0.5 * (first[2] + second[2])
 
 
-def _total(maps: NDArray[np.float32]) -> NDArray[np.float32]:
+def _total(maps: Logits) -> Logits:
     """(15, 1, 1) by how much the logits of each map are too large to be those of shares."""
     best = maps.max(axis=(1, 2), keepdims=True)
     return best + np.log(np.exp(maps - best).sum(axis=(1, 2), keepdims=True))

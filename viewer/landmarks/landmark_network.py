@@ -43,6 +43,8 @@ class Found(NamedTuple):
     """(15, 2) where else each joint may be, as `joints`."""
     second_confidence: Vector
     """(15,) probability that the joint is at its second place instead."""
+    mask: NDArray[np.float32]
+    """(CELLS, CELLS) logits that a cell shows the person."""
 
 
 def find(planes: Planes, network: Path = SHIPPED, twice: bool = False) -> Found:
@@ -54,7 +56,7 @@ def find(planes: Planes, network: Path = SHIPPED, twice: bool = False) -> Found:
         twice: As they are, and in the mirror: what the two looks do not agree on is less sure.
     """
     assert planes.shape == (1, PLANES, SIDE, SIDE)
-    maps, told = seen_twice(planes, network) if twice else seen(planes, network)
+    maps, told, mask = seen_twice(planes, network) if twice else seen(planes, network)
     joints, about = _peaks(maps)
     bins, nobody, sure = told[:BINS], told[BINS], told[BINS + 1 :]
     first, second = (
@@ -70,6 +72,7 @@ def find(planes: Planes, network: Path = SHIPPED, twice: bool = False) -> Found:
         _sigmoid(nobody),
         joints[:, 1],
         second,
+        mask,
     )
 
 

@@ -40,10 +40,10 @@ def step(
         alone: The viewer is the only one of its run.
     """
     if not settings.looks_itself:
-        told = Told(nearest_landmarks(frame.landmarks, seen.box), contradicts=False)
+        told = Told(nearest_landmarks(frame.landmarks, seen.box))
         return State(told.landmarks), told
     if frame.hurried and not alone:
-        return state, Told(None, contradicts=False)
+        return state, Told(None)
     model = LandmarkModel(network_of(settings.landmarks), alone and not frame.hurried)
     searches = not frame.hurried and frame.captured_s >= state.searched_s + SEARCH_S
     told = own_landmarks(frame.picture, seen, state.known, model, searches=searches)

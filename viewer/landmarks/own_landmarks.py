@@ -5,7 +5,9 @@ from operator import attrgetter
 from pathlib import Path
 from typing import Final, NamedTuple
 
+import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from common.body.body import JOINT_NAMES, TILTED_DEG, Vector, lean_deg
 from common.body.observation import Landmarks
@@ -14,6 +16,7 @@ from common.video.pictures import Image
 from viewer.landmarks.landmark_looks import SHIPPED
 from viewer.landmarks.landmark_network import find
 from viewer.landmarks.landmark_window import (
+    SIDE,
     Places,
     Window,
     planes_of,
@@ -69,6 +72,8 @@ class _Look(NamedTuple):
     nobody: float
     second_px: Places
     second_confidence: Vector
+    person: NDArray[np.float32]
+    """(CELLS, CELLS) logits that a cell of the window shows the person."""
 
     @property
     def surety(self) -> float:
@@ -78,14 +83,40 @@ class _Look(NamedTuple):
 SUREST: Final = attrgetter("surety")
 
 
+class PersonMask(NamedTuple):
+    """The person in a window, as the network sees them."""
+
+    logits: NDArray[np.float32]
+    """(CELLS, CELLS)"""
+    window: Window
+
+    def over(self, probability: float, shape: tuple[int, ...]) -> NDArray[np.uint8]:
+        """(H, W) 1 where the person is at least so probable; 0 outside of the window.
+
+        Args:
+            probability: Between 0 and 1.
+            shape: Of the picture, (H, W, ...).
+        """
+        high, wide = shape[:2]
+        cells = len(self.logits) - 1.0
+        corners = np.array([(0.0, 0.0), (cells, 0.0), (0.0, cells)])
+        in_planes = (corners + 0.5) * (SIDE / len(self.logits))
+        onto = cv2.getAffineTransform(
+            corners.astype(np.float32),
+            (self.window.in_picture(in_planes) - 0.5).astype(np.float32),
+        )
+        least = math.log(probability / (1.0 - probability))
+        logits = cv2.warpAffine(self.logits, onto, (wide, high), borderValue=-math.inf)
+        return (logits >= least).astype(np.uint8)
+
+
 class Told(NamedTuple):
     """What the network makes of a frame."""
 
     landmarks: Landmarks | None
     """None: it sees no person."""
-    contradicts: bool
-    """The person is seen surely without the silhouette, and not with it: that is not theirs alone,
-    or not all of theirs."""
+    person: PersonMask | None = None
+    """Where the network sees the person; None: an outside source does not say."""
 
 
 def own_landmarks(
@@ -122,10 +153,10 @@ def own_landmarks(
         best = _anywhere(picture, best, eye)
     best = _set_upright(picture, best, eye)
     if seen.box is None and (best.nobody > 0.5 or best.surety < LEAST):
-        return Told(None, contradicts=False)
+        return Told(None)
     if best.surety < SURE and best.nobody > EMPTY:
         best = best._replace(confidence=np.zeros_like(best.confidence), facing=(0.0, 0.0))
-    return Told(_told(best), contradicts=best.mask is None and best.surety >= SURE)
+    return Told(_told(best), PersonMask(best.person, best.window))
 
 
 def found_anywhere(picture: Image, eye: LandmarkModel = TWICE) -> tuple[Landmarks, float]:
@@ -218,7 +249,8 @@ def _look(picture: Image, mask: Mask | None, window: Window, eye: LandmarkModel)
     found = find(planes_of(picture, mask, window), *eye)
     joints_px, second_px = map(window.in_picture, (found.joints, found.second))
     facing, second = (found.facing_deg, found.facing_confidence), found.second_confidence
-    return _Look(mask, window, joints_px, found.confidence, facing, found.nobody, second_px, second)
+    sure, nobody = found.confidence, found.nobody
+    return _Look(mask, window, joints_px, sure, facing, nobody, second_px, second, found.mask)
 
 
 def _search(picture: Image, eye: LandmarkModel) -> _Look:
