@@ -188,12 +188,13 @@ def test_what_a_look_tells_is_put_where_it_belongs(
     bins[3] = 0.0
     sure = np.linspace(-2.0, 2.0, 15)
     told = np.concatenate([bins, [1.1], sure]).astype(np.float32)
+    mask = np.zeros((CELLS, CELLS), np.float32)
     asked = []
 
     def look(name: str) -> Callable[[Planes, Path], Seen]:
         def looked(planes: Planes, network: Path) -> Seen:
             asked.append((name, planes.shape, network))
-            return maps, told
+            return maps, told, mask
 
         return looked
 
@@ -216,12 +217,13 @@ def test_what_a_look_tells_is_put_where_it_belongs(
     assert found.second_confidence == pytest.approx(1.0 / (1.0 + np.exp(-due[1])), abs=1e-4)
     assert (found.facing_deg, found.facing_confidence) == pytest.approx((67.5, 1.0))
     assert found.nobody == pytest.approx(1.0 / (1.0 + np.exp(-1.1)))
+    assert found.mask is mask
 
 
 def test_a_second_look_in_the_mirror_has_left_where_left_is() -> None:
     """What is seen of a picture and of its mirror image, joined, is one thing: mirrored itself."""
     planes = np.ascontiguousarray(
-        np.random.default_rng(2).integers(0, 255, (1, 4, SIDE, SIDE), dtype=np.uint8)
+        np.random.default_rng(3).integers(0, 255, (1, 4, SIDE, SIDE), dtype=np.uint8)
     )
     plain = find(planes, twice=True)
     other = find(np.ascontiguousarray(planes[..., ::-1]), twice=True)
@@ -317,24 +319,31 @@ def test_the_runtime_reports_nothing_to_anybody(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "shape", "kind", "refused"),
+    ("name", "shape", "kind", "given", "refused"),
     [
-        ("planes", [1, 4, SIDE, SIDE], "tensor(uint8)", False),
-        ("planes", [1, 4, SIDE, SIDE], "tensor(float)", True),
-        ("input", [1, 4, SIDE, SIDE], "tensor(uint8)", True),
-        ("planes", [1, 3, SIDE, SIDE], "tensor(uint8)", True),
+        ("planes", [1, 4, SIDE, SIDE], "tensor(uint8)", "maps told mask", False),
+        ("planes", [1, 4, SIDE, SIDE], "tensor(float)", "maps told mask", True),
+        ("input", [1, 4, SIDE, SIDE], "tensor(uint8)", "maps told mask", True),
+        ("planes", [1, 3, SIDE, SIDE], "tensor(uint8)", "maps told mask", True),
+        ("planes", [1, 4, SIDE, SIDE], "tensor(uint8)", "maps told", True),
     ],
 )
 def test_a_network_of_anything_else_is_refused(
-    monkeypatch: pytest.MonkeyPatch, name: str, shape: list[int], kind: str, refused: bool
+    monkeypatch: pytest.MonkeyPatch,
+    name: str,
+    shape: list[int],
+    kind: str,
+    given: str,
+    refused: bool,
 ) -> None:
+    """The last is what version 0.3.0 wrote before networks showed a mask."""
     taken = SimpleNamespace(name=name, shape=shape, type=kind)
-    monkeypatch.setattr(
-        landmark_looks, "opened", lambda _: SimpleNamespace(get_inputs=lambda: [taken])
-    )
+    outputs = [SimpleNamespace(name=each) for each in given.split()]
+    opened = SimpleNamespace(get_inputs=lambda: [taken], get_outputs=lambda: outputs)
+    monkeypatch.setattr(landmark_looks, "opened", lambda _: opened)
     if refused:
         with pytest.raises(
-            SettingsError, match=r"^mine\.onnx is no network of landmarks: tritrack"
+            SettingsError, match=r"^mine\.onnx is no network of landmarks of this version: tritrack"
         ):
             refuse_no_network("mine.onnx")
     else:

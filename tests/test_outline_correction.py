@@ -1,5 +1,6 @@
 """Outlines held against landmarks: doors go, legs of the floor's colour come, whole ones stay."""
 
+import cv2
 import msgspec
 import numpy as np
 import pytest
@@ -8,7 +9,8 @@ from test_own_landmarks import acted, nobody, seen
 
 from common.body.observation import Landmarks
 from common.raster.similarity import Mask
-from viewer.landmarks.own_landmarks import Told
+from viewer.landmarks.landmark_window import Window
+from viewer.landmarks.own_landmarks import PersonMask, Told
 from viewer.room.outline_correction import _covered, _distance_2, _far_share, corrected
 
 
@@ -53,15 +55,42 @@ def test_a_door_goes_and_is_told_to_be_a_thing() -> None:
     assert not (held.things[mask]).any()
 
 
-def test_a_shadow_beside_the_body_goes_where_the_picture_contradicts_the_silhouette() -> None:
+def true_person(confidence: float = 0.9) -> Told:
+    """The network sees the person as they are, in cells of a window of all of the picture."""
+    window = Window(0, -40, 320)
+    cells = cv2.resize(acted()[0].masks[0].astype(np.float32), (320, 240))
+    square = cv2.copyMakeBorder(cells, 40, 40, 0, 0, cv2.BORDER_CONSTANT)
+    logits = 12.0 * cv2.resize(square, (48, 48), interpolation=cv2.INTER_AREA) - 6.0
+    sure = msgspec.structs.replace(true_landmarks(), confidence=(confidence,) * 15)
+    return Told(sure, PersonMask(logits, window))
+
+
+def test_a_shadow_beside_the_body_goes_where_the_network_does_not_see_the_person() -> None:
     """The person's silhouette once more beside them, so near that it may be an arm's."""
     mask = acted()[0].masks[0]
     shaded = mask | np.roll(mask, round(0.2 * acted()[2]), axis=1)
     own = seen(shaded)
     assert not corrected(own, Told(true_landmarks()), 0.15).is_changed
-    held = corrected(own, Told(true_landmarks()), 0.15)
-    assert iou(held.seen.mask, mask) > iou(shaded, mask) + 0.15
+    held = corrected(own, true_person(), 0.15)
+    assert iou(held.seen.mask, mask) > 0.75 > iou(shaded, mask) + 0.1
     assert held.things is not None
+    assert not (held.things & held.seen.mask).any()
+
+
+def test_what_a_silhouette_lacks_of_the_person_is_added_and_a_whole_one_stays() -> None:
+    for given in (without_legs()[0], np.zeros((240, 320), np.bool_)):
+        own = seen(given) if given.any() else nobody()
+        held = corrected(own, true_person(), 0.15)
+        assert iou(held.seen.mask, acted()[0].masks[0]) > 0.75
+        assert held.things is None
+    whole = seen(acted()[0].masks[0])
+    assert corrected(whole, true_person(), 0.15).seen is whole
+
+
+def test_where_the_network_is_not_sure_the_silhouette_stands() -> None:
+    own = seen(without_legs()[0])
+    assert corrected(own, true_person(0.29), 0.15).seen is own
+    assert corrected(own, true_person(0.31), 0.15).is_changed
 
 
 def test_legs_of_the_floors_colour_come() -> None:

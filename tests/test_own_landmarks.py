@@ -23,12 +23,14 @@ from viewer.landmarks.landmark_looks import SHIPPED
 from viewer.landmarks.landmark_network import Found, find
 from viewer.landmarks.landmark_window import (
     Window,
+    planes_of,
     turned_window_of,
     window_about,
     window_of,
 )
 from viewer.landmarks.own_landmarks import (
     LandmarkModel,
+    PersonMask,
     _about,
     _turn_deg,
     found_anywhere,
@@ -53,6 +55,11 @@ def acted() -> tuple[Shot, np.ndarray, float, Image]:
     joints_px = project(RIG.cameras[0], motion.joints_m[at, PICK])
     focal, far_m = RIG.cameras[0].K[0][0], 4.5
     return shot, joints_px, focal * someone.measures["stature_m"] / far_m, empty
+
+
+def overlap(one: Mask, other: Mask) -> float:
+    """Intersection over union."""
+    return float((one & other).sum() / (one | other).sum())
 
 
 def landmarks_by(*given: Any) -> Landmarks | None:
@@ -109,13 +116,24 @@ def test_a_person_whose_legs_did_not_move_is_found_whole_in_the_whole_picture() 
     apart = np.linalg.norm(joints_px - acted()[1], axis=1) / acted()[2]
     ankles = [JOINT_NAMES.index(name) for name in ("l_ankle", "r_ankle")]
     assert apart[ankles].max() < 0.05
-    assert told.contradicts
+    assert told.person is not None
+    assert overlap(told.person.over(0.5, (240, 320)) > 0, acted()[0].masks[0]) > 0.75
 
 
-def test_the_true_silhouette_is_not_contradicted() -> None:
+def test_the_network_sees_the_person_where_they_are_and_nothing_outside_of_its_window() -> None:
+    """In a turned window too."""
     picture, mask = acted()[0].frames[0], acted()[0].masks[0]
-    known = landmarks_by(picture, seen(mask), None)
-    assert not own_landmarks(picture, seen(mask), known, searches=True).contradicts
+    for turn_deg in (0.0, 30.0):
+        window = turned_window_of(mask, turn_deg)
+        found = find(planes_of(picture, None, window))
+        person = PersonMask(found.mask, window).over(0.5, picture.shape) > 0
+        assert person.shape == mask.shape
+        assert overlap(person, mask) > 0.7
+    few = PersonMask(np.full((48, 48), 9.0, np.float32), Window(100, 60, 96))
+    rows, columns = np.nonzero(few.over(0.5, (240, 320)))
+    assert (rows.min(), rows.max(), columns.min(), columns.max()) == pytest.approx(
+        (60, 155, 100, 195), abs=1
+    )
 
 
 def test_in_an_empty_room_nobody_is_seen() -> None:
@@ -210,9 +228,19 @@ UPRIGHT = np.array(
 """Joints in the planes of a trunk that stands: pelvis, neck, head, and limbs below."""
 
 
+NO_MASK = np.full((48, 48), -9.0, np.float32)
+
+
 def looked(sure: float, nobody: float = 0.0, joints: np.ndarray = UPRIGHT) -> Found:
     return Found(
-        joints, np.full(15, sure), 12.0, 0.7, nobody, joints + 1.0, np.full(15, 0.25 * sure)
+        joints,
+        np.full(15, sure),
+        12.0,
+        0.7,
+        nobody,
+        joints + 1.0,
+        np.full(15, 0.25 * sure),
+        NO_MASK,
     )
 
 
@@ -244,17 +272,16 @@ def test_a_sure_look_at_the_outline_is_enough(monkeypatch: pytest.MonkeyPatch) -
 def test_a_silhouette_elsewhere_than_the_person_of_before_is_looked_at_and_that_place_too(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """The surer of both is taken; taken without the silhouette, that is contradicted."""
+    """The surer of both is taken."""
     before = Landmarks(tuple((200.0 + i, 90.0 + 9 * i) for i in range(15)), (0.9,) * 15)
     known = _about(np.array(before.joints_px), before.confidence)
-    for sures, taken, contradicts in (((0.6, 0.7), 0.7, True), ((0.7, 0.6), 0.7, False)):
+    for sures in ((0.6, 0.7), (0.7, 0.6)):
         looks = Looks(monkeypatch, *[looked(sure) for sure in sures])
         told = own_landmarks(PICTURE, seen(BOXED), before)
         assert [is_masked for _, is_masked in looks.shown] == [True, False]
         assert looks.shown[1][0] == known
         assert told.landmarks is not None
-        assert told.landmarks.confidence[0] == taken
-        assert told.contradicts is contradicts
+        assert told.landmarks.confidence[0] == 0.7
 
 
 def test_a_search_looks_closer_only_where_it_finds_another_place(
