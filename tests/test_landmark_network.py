@@ -10,6 +10,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from test_own_landmarks import acted
 
 from common.body.body import OTHER_SIDE
 from common.config.part_settings import SettingsError
@@ -19,7 +20,14 @@ from synth.picture.picture_examples import SIDE_PX, PictureExample, picture_exam
 from viewer.landmarks import landmark_looks, landmark_network
 from viewer.landmarks.landmark_looks import BINS, CELLS, SHIPPED, Seen, refuse_no_network
 from viewer.landmarks.landmark_network import Found, find
-from viewer.landmarks.landmark_window import GREY, SIDE, Planes, planes_of, whole
+from viewer.landmarks.landmark_window import (
+    GREY,
+    SIDE,
+    Planes,
+    planes_of,
+    turned_window_of,
+    whole,
+)
 
 DRAWN = SIDE_PX / SIDE
 """Pixels as people were drawn, of those that the network sees."""
@@ -222,9 +230,8 @@ def test_what_a_look_tells_is_put_where_it_belongs(
 
 def test_a_second_look_in_the_mirror_has_left_where_left_is() -> None:
     """What is seen of a picture and of its mirror image, joined, is one thing: mirrored itself."""
-    planes = np.ascontiguousarray(
-        np.random.default_rng(3).integers(0, 255, (1, 4, SIDE, SIDE), dtype=np.uint8)
-    )
+    picture, mask = acted()[0].frames[0], acted()[0].masks[0]
+    planes = planes_of(picture, mask, turned_window_of(mask, 0.0))
     plain = find(planes, twice=True)
     other = find(np.ascontiguousarray(planes[..., ::-1]), twice=True)
     across = other.joints[OTHER_SIDE] * [-1.0, 1.0] + [SIDE, 0.0]
