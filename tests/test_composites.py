@@ -45,6 +45,59 @@ def test_without_any_mischief_the_outline_is_the_examples_or_its_mirror_image(
         assert np.array_equal(told, own) or np.array_equal(told, own[:, ::-1])
 
 
+def test_the_mask_is_the_person_whatever_the_silhouette_says(plain: pytest.MonkeyPatch) -> None:
+    own = example().body[..., 3] > 127
+    for share in ("UNTOLD_SHARE", "RAGGED_SHARE"):
+        plain.setattr(composites, share, 1.0)
+        for seed in range(4):
+            exact = made(seed).mask == 255
+            assert np.array_equal(exact, own) or np.array_equal(exact, own[:, ::-1])
+        plain.setattr(composites, share, 0.0)
+
+
+def test_the_mask_turns_grows_and_moves_with_the_joints(plain: pytest.MonkeyPatch) -> None:
+    """All of the example's joints are within its body."""
+    for name, value in (("TURN_DEG", 20.0), ("LARGER", 0.2), ("BESIDE_PX", 4.0)):
+        plain.setattr(composites, name, value)
+    for seed in range(20):
+        one = made(seed)
+        columns, rows = one.joints_px[one.inside].astype(int).T
+        assert (one.mask[rows, columns] == 255).all()
+
+
+def test_what_hides_a_person_is_not_in_the_mask(plain: pytest.MonkeyPatch) -> None:
+    """Nor what the silhouette still has of them."""
+    own = (example().body[..., 3] > 127).sum()
+    plain.setattr(composites, "HIDDEN_SHARE", 1.0)
+    hidden = [made(seed) for seed in range(30)]
+    assert np.mean([(one.mask > 0).sum() < own for one in hidden]) > 0.3
+    assert any((one.mask == 0)[one.outline > 0].sum() > 200 for one in hidden)
+    plain.setattr(composites, "HIDDEN_SHARE", 0.0)
+    plain.setattr(composites, "BEFORE_SHARE", 1.0)
+    before = [made(seed) for seed in range(30)]
+    assert np.mean([(one.mask > 0).sum() < own for one in before]) > 0.3
+
+
+def test_beyond_the_cameras_picture_there_is_no_mask(plain: pytest.MonkeyPatch) -> None:
+    plain.setattr(composites, "BORDER_SHARE", 1.0)
+    for seed in range(12):
+        one = made(seed)
+        black = one.picture.max(axis=2) == 0
+        strip = black.all(axis=0)[None] | black.all(axis=1)[:, None]
+        assert not one.mask[strip].any()
+
+
+def test_of_a_recorded_frame_the_mask_is_not_known(plain: pytest.MonkeyPatch) -> None:
+    """All of such a frame counts as the body; with the backdrop alone in its place it is known."""
+    body = np.full_like(example().body, 255)
+    recorded = example()._replace(body=body)
+    flat = np.full((BACKDROP_PX, BACKDROP_PX, 3), 128, np.uint8)
+    for nobody, due in ((0.0, UNKNOWN), (1.0, 0)):
+        plain.setattr(composites, "NOBODY_SHARE", nobody)
+        one = composite(recorded, example, lambda: flat, np.random.default_rng(1))
+        assert (one.mask == due).all()
+
+
 def test_in_the_mirror_left_is_right(plain: pytest.MonkeyPatch) -> None:
     own = example()
     mirrored = [one for one in map(made, range(8)) if not np.allclose(one.joints_px, own.joints_px)]

@@ -163,7 +163,12 @@ def pictures() -> list[Any]:
     mixed = [
         composite(one, lambda: given[0], lambda: backdrops.backdrop(5), rng) for one in given * 6
     ]
-    return [given, mixed]
+    return [given, [without_mask(one) for one in mixed]]
+
+
+def without_mask(one: composites.Composite) -> list[Any]:
+    """All of a composite but its mask, which networks were not taught at first."""
+    return [part for name, part in one._asdict().items() if name != "mask"]
 
 
 def truths() -> list[Any]:

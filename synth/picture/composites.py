@@ -41,6 +41,9 @@ class Composite(NamedTuple):
     """(SIDE_PX, SIDE_PX, 3) blue, green, red."""
     outline: NDArray[np.uint8]
     """(SIDE_PX, SIDE_PX) 255 inside, 0 outside; all UNKNOWN where it is unknown."""
+    mask: NDArray[np.uint8]
+    """(SIDE_PX, SIDE_PX) 255 where the person is visible, 0 elsewhere, whatever the silhouette says;
+    all UNKNOWN for a recorded frame, whose body covers all of it."""
     joints_px: Floats
     """(15, 2) JOINT_NAMES order."""
     inside: NDArray[np.bool_]
@@ -55,6 +58,8 @@ class _Layers(NamedTuple):
     picture: Floats
     outline: NDArray[np.uint8]
     """1 inside the silhouette, 0 outside."""
+    mask: NDArray[np.uint8]
+    """1 where the person is visible, 0 elsewhere."""
 
 
 Draw = Callable[[], PictureExample]
@@ -76,22 +81,23 @@ def composite(
     coverage, body = whole[..., 3:] / np.float32(255), _lit(whole[..., :3], rng)
     behind = _shadowed(_behind(body, coverage, other, backdrop, rng), coverage, rng)
     picture: Floats = behind * (np.float32(1) - coverage) + body
-    if rng.random() < BEFORE_SHARE:
-        picture = _with_other(picture, other(), rng)
-    layers = _hidden(_Layers(picture, example.outline.copy()), backdrop, rng)
+    mask = (coverage[..., 0] > 0.5).astype(np.uint8)
+    layers = _before(_Layers(picture, example.outline.copy(), mask), other, rng)
+    layers = _hidden(layers, backdrop, rng)
     layers, joints, facing, larger = _turned(layers, example, rng)
     inside = ((joints > 0) & (joints < SIDE_PX)).all(axis=1)
     edge = _border(rng)
     inside &= ~_beyond(edge, joints)
     shown = _filmed(layers.picture, rng)
     if edge is not None:
-        shown[edge], layers.outline[edge] = 0, 0
+        shown[edge], layers.outline[edge], layers.mask[edge] = 0, 0, 0
     told = _told(layers.outline, rng)
     stature_px = example.stature_px * larger
     if nobody:
         inside, facing = np.zeros_like(inside), np.zeros_like(facing)
         told[:] = UNKNOWN if rng.random() < 0.5 else told
-    return Composite(shown, told, joints, inside, facing, stature_px, nobody)
+    exact = np.full_like(told, UNKNOWN) if mask.all() else layers.mask * np.uint8(255)
+    return Composite(shown, told, exact, joints, inside, facing, stature_px, nobody)
 
 
 def _lit(body: Floats, rng: np.random.Generator) -> Floats:
@@ -125,14 +131,26 @@ def _behind(
         tint = rng.uniform(0, 220) * (1.0 - rng.uniform(0.0, 0.15, 3))
         behind = np.asarray(behind * rng.uniform(0.05, 0.4) + tint, np.float32)
     behind = np.asarray(behind.clip(0, 255), np.float32)
-    return _with_other(behind, other(), rng) if rng.random() < BEHIND_SHARE else behind
+    return _over(behind, _elsewhere(other(), rng)) if rng.random() < BEHIND_SHARE else behind
 
 
-def _with_other(picture: Floats, other: PictureExample, rng: np.random.Generator) -> Floats:
-    """Another person over the picture, of another size, in another place."""
+def _before(layers: _Layers, other: Draw, rng: np.random.Generator) -> _Layers:
+    """Another person before the person; the silhouette stays as it is."""
+    if rng.random() >= BEFORE_SHARE:
+        return layers
+    body = _elsewhere(other(), rng)
+    mask = layers.mask * (body[..., 3] < 127.5)
+    return _Layers(_over(layers.picture, body), layers.outline, mask.astype(np.uint8))
+
+
+def _elsewhere(other: PictureExample, rng: np.random.Generator) -> Floats:
+    """Another person, of another size, in another place: colours and coverage as of PictureExample."""
     warp = np.eye(2, 3, dtype=np.float32) * np.float32(rng.uniform(0.4, 1.1))
     warp[:, 2] = rng.uniform(-SIDE_PX / 2, SIDE_PX / 2, 2)
-    body = cv2.warpAffine(other.body, warp, (SIDE_PX, SIDE_PX)).astype(np.float32)
+    return cv2.warpAffine(other.body, warp, (SIDE_PX, SIDE_PX)).astype(np.float32)
+
+
+def _over(picture: Floats, body: Floats) -> Floats:
     return np.asarray(picture * (1.0 - body[..., 3:] / 255) + body[..., :3], np.float32)
 
 
@@ -167,7 +185,8 @@ def _hidden(layers: _Layers, backdrop: Callable[[], Backdrop], rng: np.random.Ge
         over[top : top + high, left : left + wide] = True
     picture = np.where(over[..., None], _cut(backdrop(), rng), layers.picture)
     outline = layers.outline * ~over if rng.random() < 0.6 else layers.outline
-    return _Layers(np.asarray(picture, np.float32), outline.astype(np.uint8))
+    mask = (layers.mask * ~over).astype(np.uint8)
+    return _Layers(np.asarray(picture, np.float32), outline.astype(np.uint8), mask)
 
 
 def _turned(
@@ -183,11 +202,14 @@ def _turned(
         warp = warp @ np.array([[-1.0, 0.0, SIDE_PX - 1.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
     size = (SIDE_PX, SIDE_PX)
     picture = cv2.warpAffine(layers.picture, warp, size, borderMode=cv2.BORDER_REFLECT_101)
-    outline = (cv2.warpAffine(layers.outline * np.uint8(255), warp, size) > 127).astype(np.uint8)
+    outline, mask = (
+        (cv2.warpAffine(plane * np.uint8(255), warp, size) > 127).astype(np.uint8)
+        for plane in (layers.outline, layers.mask)
+    )
     joints = (example.joints_px - 0.5) @ warp[:, :2].T + warp[:, 2] + 0.5
     facing = example.facing * (np.array([-1.0, 1.0]) if mirrored else 1.0)
     own = joints[OTHER_SIDE] if mirrored else joints
-    layers = _Layers(np.asarray(picture, np.float32), outline)
+    layers = _Layers(np.asarray(picture, np.float32), outline, mask)
     return layers, own.astype(np.float32), facing.astype(np.float32), larger
 
 
