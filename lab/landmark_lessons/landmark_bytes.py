@@ -11,25 +11,21 @@ from typing import Final
 
 import onnx
 from onnx import GraphProto
-from onnxruntime.quantization import (
-    CalibrationDataReader,
-    QuantFormat,
-    QuantType,
-    quantize_static,
-)
-from onnxruntime.quantization.shape_inference import quant_pre_process
+from torch import nn
 
-from lab.landmark_lessons.landmark_file import WEIGHT
+from lab.landmark_lessons.landmark_file import WEIGHT, write_network
+from lab.landmark_lessons.landmark_planes import windows_of
+from synth.picture.composites import Composite
 from viewer.landmarks.landmark_window import Planes
 
 FINEST: Final = ("stem.", "blocks.0.", "blocks.1.", "up.2.")
-HEADS: Final = ("heat.", "correction.", "nearest.", "summed.", "told.")
+HEADS: Final = ("heat.", "correction.", "nearest.", "summed.", "told.", "mask.")
 WHOLE: Final = FINEST + HEADS
 """Parts of `MovenetLandmarks` whose layers stay whole."""
 
 
-class _Windows(CalibrationDataReader):
-    """Windows as the network takes them, one after another."""
+class _Windows:
+    """Windows as the network takes them, one after another: a CalibrationDataReader."""
 
     def __init__(self, windows: Iterable[Planes]) -> None:
         self.rest = iter(windows)
@@ -38,6 +34,20 @@ class _Windows(CalibrationDataReader):
         """The next, or None after the last."""
         planes = next(self.rest, None)
         return None if planes is None else {"planes": planes}
+
+
+def write_both(network: nn.Module, shown: list[Composite], folder: Path, out: Path) -> None:
+    """Write a trained network whole, and in bytes.
+
+    Args:
+        network: Is written as it is.
+        shown: Any people; the ranges of activations are theirs.
+        folder: Keeps the whole network, `whole.onnx`.
+        out: The file to write, in bytes.
+    """
+    whole = folder / "whole.onnx"
+    write_network(network, whole)
+    write_in_bytes(whole, windows_of(shown), out)
 
 
 def write_in_bytes(
@@ -51,6 +61,9 @@ def write_in_bytes(
         out: The file to write.
         whole: Names of parts that stay as they are.
     """
+    from onnxruntime.quantization import QuantFormat, QuantType, quantize_static
+    from onnxruntime.quantization.shape_inference import quant_pre_process
+
     with tempfile.TemporaryDirectory() as folder:
         prepared = Path(folder) / "prepared.onnx"
         quant_pre_process(source, prepared, skip_symbolic_shape=True)

@@ -7,15 +7,14 @@ import numpy as np
 import onnx
 import torch
 from numpy.typing import NDArray
-from onnx import numpy_helper
+from onnx import GraphProto, numpy_helper
 from torch import nn
 
-from lab.landmark_lessons.landmark_layers import LandmarkNetwork
-from lab.landmark_lessons.landmark_planes import STEP
-from viewer.landmarks.landmark_window import GREY, PLANES, SIDE
+from viewer.landmarks.landmark_window import PLANES, SIDE
 
 WEIGHT: Final = ".weight"
 """How a file ends the name of a layer's weights."""
+OUTPUTS: Final = ("maps", "told", "mask")
 
 
 class _OfBytes(nn.Module):
@@ -25,19 +24,19 @@ class _OfBytes(nn.Module):
         super().__init__()
         self.network = network
 
-    def forward(self, planes: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
-        found: tuple[torch.Tensor, torch.Tensor] = self.network((planes.float() - GREY) / STEP)
+    def forward(self, planes: torch.Tensor) -> tuple[torch.Tensor, ...]:
+        found: tuple[torch.Tensor, ...] = self.network(planes.float())
         return found
 
 
 def write_network(network: nn.Module, out: Path) -> None:
-    """Write a trained network as the viewer runs it, ONNX, normalisations folded into layers."""
+    """Write a trained network as the viewer runs it, ONNX."""
     torch.onnx.export(
         _OfBytes(network).eval(),
         (torch.zeros(1, PLANES, SIDE, SIDE, dtype=torch.uint8),),
         str(out),
         input_names=["planes"],
-        output_names=["maps", "told"],
+        output_names=list(OUTPUTS),
         external_data=False,
         verbose=False,
     )
@@ -48,34 +47,48 @@ Weights = dict[str, tuple[NDArray[np.float32], NDArray[np.float32]]]
 
 
 def weights_of(file: Path) -> Weights:
-    """What a file of ours holds."""
+    """What a file of ours holds, which leaves out offsets that are 0; of one in bytes, what its
+    bytes stand for."""
     graph = onnx.load(file).graph
     held = {each.name: numpy_helper.to_array(each) for each in graph.initializer}
-    layers = [node.input for node in graph.node if node.op_type in {"Conv", "Gemm"}]
-    return {
-        weight.removeprefix("network.").removesuffix(WEIGHT): (held[weight], held[offset])
-        for _, weight, offset in layers
-    }
+    held |= _unpacked(graph, held)
+    found = {}
+    for node in graph.node:
+        if node.op_type in {"Conv", "Gemm"}:
+            weight, *offset = (held[name] for name in node.input[1:])
+            zeros = np.zeros(len(weight), np.float32)
+            found[_layer(node.input[1])] = weight, offset[0] if offset else zeros
+    return found
 
 
-def fill(network: LandmarkNetwork, weights: Weights) -> None:
-    """Give a network the weights of a file, whose normalisations are folded into them: its own
-    then change nothing, as long as it is not told to learn them (`eval`).
+def _layer(weight: str) -> str:
+    """A layer by the name of its weights."""
+    return weight.removeprefix("network.").partition(WEIGHT)[0]
+
+
+def _unpacked(
+    graph: GraphProto, held: dict[str, NDArray[np.generic]]
+) -> dict[str, NDArray[np.float32]]:
+    """Weights and offsets in bytes as numbers, each output channel by its own scale."""
+    found = {}
+    for node in graph.node:
+        if node.op_type == "DequantizeLinear" and node.input[0] in held:
+            packed, scale, zero = (held[name].astype(np.float32) for name in node.input)
+            aside = [-1] + [1] * (packed.ndim - 1)
+            found[node.output[0]] = (packed - zero.reshape(aside)) * scale.reshape(aside)
+    return found
+
+
+def fill(network: nn.Module, weights: Weights) -> None:
+    """Give a network the weights of a file.
 
     Args:
         network: Is changed.
         weights: Of all its layers.
     """
-    offset = None
     with torch.no_grad():
         for name, part in network.named_modules():
             if isinstance(part, nn.Conv2d | nn.Linear):
                 weight, offset = (torch.from_numpy(np.array(values)) for values in weights[name])
                 part.weight.copy_(weight)
-                if part.bias is not None:
-                    part.bias.copy_(offset)
-            elif isinstance(part, nn.BatchNorm2d):
-                part.weight.fill_(1.0)
                 part.bias.copy_(offset)
-                part.running_mean.zero_()
-                part.running_var.fill_(1.0 - part.eps)

@@ -10,9 +10,10 @@ import torch
 from torch import nn
 
 from lab.landmark_lessons import landmark_loss
-from lab.landmark_lessons.landmark_layers import Paced
 from synth.picture.composites import Composite
 
+RATE: Final = 2e-3
+"""Of what learns fastest, at its height."""
 DECAY: Final = 1e-4
 STEEPEST: Final = 5.0
 """Size that a slope is cut to."""
@@ -22,6 +23,16 @@ AHEAD: Final = 4
 
 Wish = TypeVar("Wish")
 """What a batch is to be made of."""
+
+
+class Paced(NamedTuple):
+    """Weights that learn alike."""
+
+    weights: list[nn.Parameter]
+    pace: float
+    """How fast, as a share of the rate."""
+    pull: float = 0.0
+    """Share of the way back to where they began by which a batch at the full rate pulls them."""
 
 
 class Work(NamedTuple):
@@ -46,7 +57,15 @@ def begun(network: nn.Module, parts: list[Paced]) -> Work:
     for part in parts:
         for weights in part.weights:
             weights.requires_grad_(True)
-    groups = [{"params": part.weights, "pace": part.pace} for part in parts]
+    groups = [
+        {
+            "params": part.weights,
+            "pace": part.pace,
+            "pull": part.pull,
+            "began": [weights.detach().clone() for weights in part.weights],
+        }
+        for part in parts
+    ]
     adam = torch.optim.AdamW(groups, weight_decay=DECAY)
     return Work(network, copy.deepcopy(network), adam, 0)
 
@@ -74,19 +93,22 @@ def learnt_from(work: Work, shown: list[Composite], rate: float, share: float) -
     """One batch more.
 
     Args:
-        work: Its network is changed; whether it learns its normalisations is told by its mode.
+        work: Its network is changed.
         shown: The batch.
-        rate: How fast it learns.
+        rate: How fast it learns, as a share of RATE.
         share: Of the running mean that this batch replaces.
     """
     network, mean, adam, at = work
     for group in adam.param_groups:
-        group["lr"] = rate * group["pace"]
+        group["lr"] = RATE * rate * group["pace"]
     adam.zero_grad()
     landmark_loss.loss(network, shown).backward()
     torch.nn.utils.clip_grad_norm_(network.parameters(), STEEPEST)
     adam.step()
     with torch.no_grad():
+        for group in adam.param_groups:
+            for weights, first in zip(group["params"], group["began"], strict=True):
+                weights.lerp_(first, rate * group["pull"])
         own, running = network.state_dict(), mean.state_dict()
         for name, value in running.items():
             if value.is_floating_point():

@@ -1,6 +1,7 @@
-"""The network of landmarks, trained on pictures of synthetic people: resumable."""
+"""The network of landmarks, trained on pictures of synthetic people in three stages: resumable."""
 
 import multiprocessing
+from collections.abc import Iterator
 from functools import lru_cache
 from pathlib import Path
 from typing import Final, NamedTuple
@@ -13,7 +14,8 @@ from torch import nn
 
 from common.npz_file import Facts
 from lab.landmark_lessons import landmark_loss, work_of
-from lab.landmark_lessons.landmark_file import write_network
+from lab.landmark_lessons.landmark_bytes import write_both
+from lab.landmark_lessons.landmark_confidence import set_confidence
 from lab.landmark_lessons.landmark_learning import (
     Work,
     ahead,
@@ -22,7 +24,8 @@ from lab.landmark_lessons.landmark_learning import (
     learnt_from,
     resumed,
 )
-from lab.landmark_lessons.photographed_start import photographed_start
+from lab.landmark_lessons.movenet_landmarks import MovenetLandmarks, between
+from lab.landmark_lessons.movenet_start import movenet
 from lab.landmark_lessons.picture_store import Backdrops, Part, PictureStore, draw
 from lab.training.training import TrainingError
 from runtime.terminal import bar
@@ -36,23 +39,29 @@ ANNY_TIMES: Final = 2
 BACKDROPS: Final = 2_400
 HELD_BACK: Final = 100
 """People who are drawn to tell how good the network is, and not learnt from."""
-BATCHES, BATCH = 4_000, 64
-RATE, WARM, STEADY_SHARE = 2e-3, 100, 0.4
-"""Highest rate, of what is new; batches until it is reached; share of them until it falls to
-nothing."""
-MEAN_OVER: Final = 200
+BATCH: Final = 32
+BATCHES, HEAD_BATCHES = 2_400, 450
+"""By which heads and trunk learn, and after that the heads anew on the trunk that then stays."""
+KEPT: Final = 0.5
+"""Share of what the trunk learnt that is kept: weights between the published and the learnt ones
+see drawn people and, unlike the learnt ones, photographs still."""
+WARM, STEADY_SHARE = 50, 0.4
+"""Batches until the highest rate is reached, and share of them until it falls to nothing."""
+MEAN_OVER: Final = 100
 """Batches over which the weights' running mean goes: that mean is what is written."""
 KEEP_EVERY: Final = 100
 """Batches after which the work so far is kept."""
+HELD_BATCHES, RANGED = 20, 64
+"""Batches of people who were held back; how many of their pictures give activations' ranges."""
 NEAR: Final = 0.1
 """What is told of how good it is: how many joints are within this share of the stature."""
 
 
 def train_landmarks(out: Path, seed: int, console: Console) -> Facts:
-    """Learn the network and write it, two hours on two cores.
+    """Learn the network and write it in bytes, two hours on two cores.
 
-    What is drawn and learnt is kept beside it in a folder, `<out>.work`, and the next call with the
-    same file goes on from there.
+    What is drawn and learnt is kept beside it in a folder, `<out>.work`, with the network before
+    it was rounded (`whole.onnx`), and the next call with the same file goes on from there.
 
     Args:
         out: The file to write, ONNX.
@@ -66,13 +75,15 @@ def train_landmarks(out: Path, seed: int, console: Console) -> Facts:
         raise TrainingError(f"cannot write {out}: there is no folder {out.parent}")
     folder = work_of(out)
     try:
-        folders = _drawn(folder, seed, console)
-        work = _learnt(folders[:-1], folder / "learnt.pt", seed, console)
-        write_network(work.mean, out)
+        *folders, held_back = _drawn(folder, seed, console)
+        network = _trained(folders, folder, seed, console)
+        held = [*_held(held_back, seed)]
+        set_confidence(network, held)
+        write_both(network, held[:RANGED], folder, out)
     except OSError as error:
         raise TrainingError(f"cannot write {folder}: {error.strerror}") from error
-    right = _right(work.mean, folders[-1:], seed)
-    return {"model": str(out), "pictures": work.batch * BATCH, "within_a_tenth": right}
+    pictures = (BATCHES + HEAD_BATCHES) * BATCH
+    return {"model": str(out), "pictures": pictures, "within_a_tenth": _right(network, held)}
 
 
 def _drawn(folder: Path, seed: int, console: Console) -> list[Path]:
@@ -90,6 +101,16 @@ def _drawn(folder: Path, seed: int, console: Console) -> list[Path]:
         folders = list(progress.track(drawn, total=len(parts), description="drawing"))
     own = -(-PEOPLE // PART)
     return [*folders[:own], *folders[own:-1] * ANNY_TIMES, folders[-1]]
+
+
+class Stage(NamedTuple):
+    """Batches over which the rate rises and falls once."""
+
+    kept: Path
+    """The file of what is learnt."""
+    first: int
+    """Number of its first batch, of all that are made up."""
+    batches: int
 
 
 class Wanted(NamedTuple):
@@ -121,43 +142,67 @@ def _backdrops(seed: int) -> Backdrops:
     return Backdrops.drawn(range(seed * BACKDROPS, (seed + 1) * BACKDROPS))
 
 
-def _learnt(folders: list[Path], kept: Path, seed: int, console: Console) -> Work:
-    """The network after all batches; what was kept before is not done again."""
-    work = _begun(kept, folders, seed)
-    wishes = (Wanted(tuple(folders), seed, at) for at in range(work.batch, BATCHES))
+def _trained(folders: list[Path], work: Path, seed: int, console: Console) -> MovenetLandmarks:
+    """The network after all stages: heads and trunk learn, the trunk goes part of the way back to
+    what was published, and the heads learn anew on it.
+
+    Args:
+        folders: Of people.
+        work: The folder of what is kept of each stage.
+        seed: Of all choices.
+        console: For progress.
+    """
+    torch.manual_seed(seed)
+    wanted = Wanted(tuple(folders), seed, 0)
+    network = MovenetLandmarks(movenet()).to(memory_format=torch.channels_last)
+    both, first = [network.heads(), network.trunk()], Stage(work / "learnt.pt", 0, BATCHES)
+    learnt = _learnt(resumed(begun(network, both), first.kept), first, wanted, console)
+    network = between(learnt.mean, movenet(), KEPT)
+    second = Stage(work / "heads.pt", BATCHES, HEAD_BATCHES)
+    heads = resumed(begun(network, [network.heads()]), second.kept)
+    return _learnt(heads, second, wanted, console).mean
+
+
+def _learnt(work: Work, stage: Stage, wanted: Wanted, console: Console) -> Work:
+    """A work after all batches of a stage.
+
+    Args:
+        work: How far it is.
+        stage: Whose batches it is of.
+        wanted: Any batch.
+        console: For progress.
+    """
+    _, first, batches = stage
+    wishes = (wanted._replace(batch=first + at) for at in range(work.batch, batches))
     with multiprocessing.get_context("spawn").Pool(1) as pool, bar(console) as progress:
-        task = progress.add_task("learning", total=BATCHES, completed=work.batch)
+        task = progress.add_task("learning", total=batches, completed=work.batch)
         for shown in ahead(pool, composed, wishes):
-            work = _step(work, shown)
+            work = _step(work, shown, batches)
             progress.advance(task)
-            if work.batch % KEEP_EVERY == 0 or work.batch == BATCHES:
-                keep(work, kept)
+            if work.batch % KEEP_EVERY == 0 or work.batch == batches:
+                keep(work, stage.kept)
     return work
 
 
-def _begun(kept: Path, folders: list[Path], seed: int) -> Work:
-    """What was kept, or a fresh start."""
-    torch.manual_seed(seed)
-    first = composed(Wanted(tuple(folders), seed, BATCHES))
-    network = photographed_start(first).to(memory_format=torch.channels_last)
-    return resumed(begun(network, network.paces()), kept)
-
-
-def _step(work: Work, shown: list[Composite]) -> Work:
-    """One batch more."""
-    work.network.train()
+def _step(work: Work, shown: list[Composite], batches: int) -> Work:
+    """One batch more of so many."""
     share = max(1.0 / MEAN_OVER, 1.0 / (1.0 + 0.1 * work.batch))
-    return learnt_from(work, shown, _rate(work.batch), share)
+    return learnt_from(work, shown, _rate(work.batch, batches), share)
 
 
-def _rate(at: int) -> float:
-    """Rises, stays, and falls to nothing."""
-    left = (1.0 - at / BATCHES) / (1.0 - STEADY_SHARE)
-    return RATE * min(1.0, (at + 1) / WARM, max(left, 0.01))
+def _rate(at: int, batches: int) -> float:
+    """Of the highest: rises, stays, and falls to nothing."""
+    left = (1.0 - at / batches) / (1.0 - STEADY_SHARE)
+    return min(1.0, (at + 1) / WARM, max(left, 0.01))
 
 
-def _right(network: nn.Module, folders: list[Path], seed: int) -> float:
-    """Share of the joints of people who were held back that are nearly right."""
-    shown = composed(Wanted(tuple(folders), seed, BATCHES))
+def _held(folder: Path, seed: int) -> Iterator[Composite]:
+    """Pictures of people who were held back."""
+    for at in range(HELD_BATCHES):
+        yield from composed(Wanted((folder,), seed, BATCHES + HEAD_BATCHES + at))
+
+
+def _right(network: nn.Module, shown: list[Composite]) -> float:
+    """Share of the joints that are nearly right."""
     off = landmark_loss.joints_off(network, shown)
     return float((off[np.isfinite(off)] < NEAR).mean())

@@ -37,6 +37,8 @@ class Seen(NamedTuple):
     """(n, DEEP, S/32, S/32) features at the coarsest."""
     heat: Any
     """(n, POINTS, S/4, S/4) logits of how probably a point is in a cell."""
+    early: Any
+    """(n, 24, S/4, S/4) features of the finest block that joins the way up, of colours alone."""
 
 
 class Step(nn.Module):
@@ -126,7 +128,7 @@ class MoveNet(nn.Module):
         for aside, at, up in zip(finer, ASIDES, self.up, strict=True):
             larger = functional.interpolate(fine, scale_factor=2, mode="bilinear")
             fine = up(larger + aside(kept[at]))
-        return Seen(fine, deep, self.heat(fine))
+        return Seen(fine, deep, self.heat(fine), kept[ASIDES[-1]])
 
 
 def _whole(channels: float) -> int:

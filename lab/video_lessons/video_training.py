@@ -15,8 +15,9 @@ from torch import nn
 
 from common.npz_file import Facts
 from lab.landmark_lessons import landmark_loss, work_of
-from lab.landmark_lessons.landmark_file import fill, weights_of, write_network
-from lab.landmark_lessons.landmark_layers import LandmarkNetwork
+from lab.landmark_lessons.landmark_bytes import write_both
+from lab.landmark_lessons.landmark_confidence import set_confidence
+from lab.landmark_lessons.landmark_file import fill, weights_of
 from lab.landmark_lessons.landmark_learning import (
     Work,
     ahead,
@@ -25,11 +26,13 @@ from lab.landmark_lessons.landmark_learning import (
     learnt_from,
     resumed,
 )
+from lab.landmark_lessons.movenet_landmarks import MovenetLandmarks
+from lab.landmark_lessons.movenet_layers import MoveNet
 from lab.landmark_lessons.picture_store import Backdrops, Part, PictureStore, draw
 from lab.training.training import TrainingError
 from lab.video_lessons.video_examples import Looked, looked_through
 from runtime.terminal import bar
-from synth.picture.composites import Composite, composite
+from synth.picture.composites import UNKNOWN, Composite, composite
 from synth.picture.picture_examples import PictureExample
 from viewer.landmarks.landmark_looks import SHIPPED
 
@@ -37,14 +40,12 @@ FIRST: Final = 30_000_000
 """Seed of the first synthetic person: outside the packaged network's training data."""
 VIDEO_SHARE: Final = 0.5
 """Share of the videos' examples in each batch."""
-RATE, WARM, MEAN_OVER, KEEP_EVERY = 1e-3, 20, 50, 50
-"""As in `landmark_training`: the network is trained already."""
+RATE, WARM, MEAN_OVER, KEEP_EVERY = 0.5, 20, 50, 50
+"""As in `landmark_training`; half of its highest rate: the network is trained already."""
 FAR: Final = 0.3
 """Upper bound of a joint's error in the mean, statures."""
 FORGETS: Final = 1.03
 """Largest ratio of the error on synthetic people, after to before, with which a network is kept."""
-GROUP: Final = 64
-"""Number of pictures per inference."""
 FEWEST: Final = 50
 """Fewest training examples; a quarter of that are held out."""
 
@@ -120,7 +121,8 @@ def teach_on_videos(
     verdict = Verdict(*zip(*(_off(each, held) for each in (before, work.mean)), strict=True))
     if not verdict.better:
         raise TrainingError(f"no better, so nothing is written: {verdict.line()}")
-    write_network(work.mean, out)
+    set_confidence(work.mean, _spoilt(held))
+    write_both(work.mean, composed(wanted._replace(at=plan.batches)), folder, out)
     return {"model": str(out), "verdict": verdict.line(), **verdict._asdict()}
 
 
@@ -181,9 +183,9 @@ def _backdrops(plan: Plan) -> Backdrops:
     return Backdrops.drawn(range(FIRST, FIRST + plan.backdrops))
 
 
-def _shipped() -> LandmarkNetwork:
-    """The packaged network; its normalisations are folded and stay constant."""
-    network = LandmarkNetwork().to(memory_format=torch.channels_last)
+def _shipped() -> MovenetLandmarks:
+    """The packaged network; weights stored in bytes are dequantised."""
+    network = MovenetLandmarks(MoveNet()).to(memory_format=torch.channels_last)
     fill(network, weights_of(SHIPPED))
     return network.eval()
 
@@ -191,7 +193,7 @@ def _shipped() -> LandmarkNetwork:
 def _learnt(wanted: Wanted, kept: Path, console: Console) -> Work:
     """The network after all batches; those done before are not repeated."""
     network, batches = _shipped(), wanted.plan.batches
-    work = resumed(begun(network, network.paces()), kept)
+    work = resumed(begun(network, [network.heads(), network.trunk()]), kept)
     wishes = (wanted._replace(at=at) for at in range(work.batch, batches))
     with multiprocessing.get_context("spawn").Pool(1) as pool, bar(console) as progress:
         task = progress.add_task("learning", total=batches, completed=work.batch)
@@ -209,16 +211,20 @@ def _off(network: nn.Module, held: Wanted) -> tuple[float, float]:
     people."""
     films = _opened(held.films)
     plain = [_plain(films[at]) for at in range(len(films))]
+    return _mean_off(network, plain), _mean_off(network, _spoilt(held))
+
+
+def _spoilt(held: Wanted) -> list[Composite]:
+    """One composite of each synthetic example that is held back."""
     rng, made_up, backdrops = (
         np.random.default_rng(89),
         _opened(held.made_up),
         _backdrops(held.plan),
     )
-    spoilt = [
+    return [
         composite(made_up[at], lambda: made_up.any(rng), lambda: backdrops.any(rng), rng)
         for at in range(len(made_up))
     ]
-    return _mean_off(network, plain), _mean_off(network, spoilt)
 
 
 def _plain(example: PictureExample) -> Composite:
@@ -227,12 +233,12 @@ def _plain(example: PictureExample) -> Composite:
     inside = np.all((joints > 0) & (joints < len(example.body)), axis=1)
     outline = example.outline * np.uint8(255)
     picture = np.ascontiguousarray(example.body[..., :3])
+    mask = np.full_like(outline, UNKNOWN)
     return Composite(
-        picture, outline, joints, inside, example.facing, example.stature_px, nobody=False
+        picture, outline, mask, joints, inside, example.facing, example.stature_px, nobody=False
     )
 
 
 def _mean_off(network: nn.Module, shown: list[Composite]) -> float:
-    groups = [shown[at : at + GROUP] for at in range(0, len(shown), GROUP)]
-    off = np.concatenate([landmark_loss.joints_off(network, group) for group in groups])
+    off = landmark_loss.joints_off(network, shown)
     return float(np.minimum(off[np.isfinite(off)], FAR).mean())
