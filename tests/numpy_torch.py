@@ -150,7 +150,7 @@ def numpy_torch(**parts: Any) -> Any:
         softmax=softmax,
         log_softmax=lambda values, axis: np.log(softmax(values, axis)),
         zeros_like=np.zeros_like,
-        cat=np.concatenate,
+        cat=lambda parts, axis=0: np.concatenate(parts, axis).view(Tensor),
         stack=lambda parts, axis=0: np.stack(parts, axis).view(Tensor),
         **parts,
     )

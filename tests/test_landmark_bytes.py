@@ -1,4 +1,4 @@
-"""A network in bytes sees nearly what the whole one sees."""
+"""A network in bytes sees nearly what the whole one sees, and its weights can be learnt on from."""
 
 from pathlib import Path
 
@@ -14,7 +14,7 @@ pytest.importorskip("onnx", reason="the extra `train` is not installed")
 @pytest.mark.slow
 def test_a_network_in_bytes_sees_nearly_the_same_in_half_the_space(tmp_path: Path) -> None:
     from lab.landmark_lessons.landmark_bytes import write_in_bytes
-    from lab.landmark_lessons.landmark_file import write_network
+    from lab.landmark_lessons.landmark_file import weights_of, write_network
     from lab.landmark_lessons.movenet_landmarks import MovenetLandmarks
     from lab.landmark_lessons.movenet_start import movenet
 
@@ -28,3 +28,9 @@ def test_a_network_in_bytes_sees_nearly_the_same_in_half_the_space(tmp_path: Pat
     for planes in windows[4:]:
         maps = [opened(each).run(["maps"], {"planes": planes})[0] for each in (whole, small)]
         assert np.corrcoef(maps[0].ravel(), maps[1].ravel())[0, 1] > 0.98
+    exact, rounded = weights_of(whole), weights_of(small)
+    assert exact.keys() == rounded.keys()
+    for name, (weight, _) in exact.items():
+        most = np.abs(weight.reshape(len(weight), -1)).max(axis=1)
+        off = np.abs(weight - rounded[name][0]).reshape(len(weight), -1).max(axis=1)
+        assert (off <= 0.51 * most / 127).all(), "half of a byte's step, of each channel"
