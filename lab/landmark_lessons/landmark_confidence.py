@@ -35,10 +35,10 @@ def set_confidence(network: MovenetLandmarks, shown: list[Composite]) -> None:
     near = near_enough((peaks(flat) - joints).norm(dim=-1), somebody)
     about = shares_about(flat)[1].sum((-2, -1)).clamp(LEAST, 1.0 - LEAST).logit()
     slope, share, offset = PLATT
-    own, added = fitted(
-        *(values.numpy().ravel().astype(float) for values in (told[:, -JOINTS:], share * about)),
-        near.numpy().ravel(),
+    logits, given, right = (
+        values.numpy().ravel().astype(float) for values in (told[:, -JOINTS:], share * about, near)
     )
+    own, added = fitted(logits, given, right)
     with torch.no_grad():
         last, times = network.told[-1], own / slope
         last.weight[-JOINTS:] *= times

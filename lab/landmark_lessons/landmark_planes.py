@@ -37,12 +37,9 @@ def windows_of(shown: list[Composite]) -> Iterator[Planes]:
 def masks_of(shown: list[Composite]) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
     """The share of each cell that the person covers, (n, CELLS, CELLS), and where that is known,
     (n,), 1 or 0."""
-    masks = [
-        cv2.resize(one.mask, (CELLS, CELLS), interpolation=cv2.INTER_AREA).astype(np.float32)
-        for one in shown
-    ]
+    masks = [cv2.resize(one.mask, (CELLS, CELLS), interpolation=cv2.INTER_AREA) for one in shown]
     known = [float((one.mask != UNKNOWN).any()) for one in shown]
-    return np.stack(masks) / np.float32(255), np.array(known, np.float32)
+    return np.array(masks, np.float32) / np.float32(255), np.array(known, np.float32)
 
 
 def _levels(pictures: NDArray[np.uint8]) -> torch.Tensor:
