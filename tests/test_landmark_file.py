@@ -6,8 +6,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from viewer.landmarks.landmark_looks import opened
-from viewer.landmarks.landmark_window import PLANES, SIDE
+from synth.picture.picture_examples import picture_examples
+from viewer.landmarks.landmark_looks import SHIPPED, opened
+from viewer.landmarks.landmark_window import PLANES, SIDE, planes_of, whole
 
 torch = pytest.importorskip("torch", reason="the extra `train` is not installed")
 pytest.importorskip("onnx", reason="the extra `train` is not installed")
@@ -61,3 +62,20 @@ def test_a_file_gives_all_weights_back(network: Any, file: Path) -> None:
     fill(again, weights_of(file))
     for own, other in zip(network.parameters(), again.parameters(), strict=True):
         torch.testing.assert_close(own, other)
+
+
+def test_the_weights_of_the_shipped_file_say_nearly_what_the_file_says_in_bytes() -> None:
+    """Of drawn people on black: a network is learnt on from these."""
+    from lab.landmark_lessons.landmark_file import fill, weights_of
+    from lab.landmark_lessons.movenet_landmarks import MovenetLandmarks
+    from lab.landmark_lessons.movenet_layers import MoveNet
+
+    shipped = MovenetLandmarks(MoveNet())
+    fill(shipped, weights_of(SHIPPED))
+    for one in [*picture_examples(61_000)][:4]:
+        picture = np.ascontiguousarray(one.body[..., :3])
+        planes = planes_of(picture, one.outline > 0, whole(picture.shape))
+        with torch.no_grad():
+            due = shipped(torch.from_numpy(planes).float())
+        for own, other in zip(due, opened(SHIPPED).run(None, {"planes": planes}), strict=True):
+            assert np.corrcoef(own.numpy().ravel(), other.ravel())[0, 1] > 0.95
