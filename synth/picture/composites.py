@@ -42,8 +42,8 @@ class Composite(NamedTuple):
     outline: NDArray[np.uint8]
     """(SIDE_PX, SIDE_PX) 255 inside, 0 outside; all UNKNOWN where it is unknown."""
     mask: NDArray[np.uint8]
-    """(SIDE_PX, SIDE_PX) 255 where the person is visible, 0 elsewhere, whatever the silhouette says;
-    all UNKNOWN for a recorded frame, whose body covers all of it."""
+    """(SIDE_PX, SIDE_PX) 255 where the person is visible, 0 elsewhere, whatever the silhouette
+    says; all UNKNOWN for a recorded frame, whose body covers all of it."""
     joints_px: Floats
     """(15, 2) JOINT_NAMES order."""
     inside: NDArray[np.bool_]
@@ -144,7 +144,7 @@ def _before(layers: _Layers, other: Draw, rng: np.random.Generator) -> _Layers:
 
 
 def _elsewhere(other: PictureExample, rng: np.random.Generator) -> Floats:
-    """Another person, of another size, in another place: colours and coverage as of PictureExample."""
+    """Another person, of another size, in another place: (SIDE_PX, SIDE_PX, 4) as an example's."""
     warp = np.eye(2, 3, dtype=np.float32) * np.float32(rng.uniform(0.4, 1.1))
     warp[:, 2] = rng.uniform(-SIDE_PX / 2, SIDE_PX / 2, 2)
     return cv2.warpAffine(other.body, warp, (SIDE_PX, SIDE_PX)).astype(np.float32)
