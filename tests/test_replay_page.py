@@ -167,7 +167,14 @@ def test_a_recording_is_played_until_ctrl_c_and_its_page_closed(
     told = replay_page.replay_on_page(tmp_path / "walk", 9, said)
     assert told == {"clip": "made up", "shown": 7}
     assert asked == [
-        (("made up", 9), {"commands": False, "most_bytes": 160_000_000}),
+        (
+            ("made up", 9),
+            {
+                "commands": False,
+                "cameras": tuple(f"camera {n}" for n in range(1, 9)),
+                "most_bytes": 160_000_000,
+            },
+        ),
         ("end", {"of": "walk", "out": str(tmp_path / "walk")}),
         "wait",
         "close",

@@ -14,12 +14,11 @@ from common.config.settings import Settings
 from common.method import DEFAULT, PAPER, THESIS, Method
 from common.raster.silhouette_report import unpack
 from common.rig.camera import paper_rig
-from viewer import camera_fault, track
+from viewer import camera_fault, landmark_step, track
 from viewer.background import moved_camera
 from viewer.background.background import Background, learn
 from viewer.background.moved_objects import Patch
 from viewer.captured_frame import CapturedFrame
-from viewer.landmarks import landmark_step
 from viewer.landmarks.own_landmarks import Told
 from viewer.room.outline_correction import Corrected
 from viewer.silhouette import silhouette

@@ -36,10 +36,9 @@ from common.method import DEFAULT, METHODS, Method
 from common.raster.silhouette_report import unpack
 from common.raster.similarity import Mask
 from common.rig.camera import project
-from viewer import track
+from viewer import landmark_step, track
 from viewer.background.background import learn
 from viewer.captured_frame import CapturedFrame
-from viewer.landmarks import landmark_step
 from viewer.landmarks.own_landmarks import Told
 from viewer.paper import pose_search
 

@@ -24,12 +24,11 @@ from common.video.clips import open_clip
 from common.video.decoding import Decoder
 from common.video.pictures import DecoderDied, Undecodable, is_camera, is_recorded
 from common.video.reduction import jpeg_of
-from viewer import track
+from viewer import landmark_step, track
 from viewer.background.background import Background
 from viewer.background.new_background import Learning
 from viewer.capture import Live, RoomClock
 from viewer.captured_frame import CapturedFrame
-from viewer.landmarks import landmark_step
 from viewer.landmarks.landmark_sources import outside_sources
 from viewer.load_shedding import LoadShedder
 from viewer.resend_buffer import ResendBuffer

@@ -14,14 +14,13 @@ from common.method import Method
 from common.raster.silhouette_report import mask_of, pack, with_person
 from common.raster.similarity import Mask
 from common.rig.camera import Camera
-from viewer import camera_fault
+from viewer import camera_fault, landmark_step
 from viewer.background import moved_camera
 from viewer.background.background import Background
 from viewer.background.moved_objects import Patch
 from viewer.background.turned_picture import lens_of, turned_background
 from viewer.captured_frame import CapturedFrame
 from viewer.expected_body import expected_body
-from viewer.landmarks import landmark_step
 from viewer.landmarks.own_landmarks import Told
 from viewer.paper import pose_search
 from viewer.paper.measure import opening_measure

@@ -53,7 +53,7 @@ def track(
     force: Force = False,
     json_wanted: JsonWanted = False,
 ) -> None:
-    """Track recorded clips, as in a live run but as fast as possible.
+    """Track recorded clips, as fast as possible.
 
     The same clip gives the same poses, byte for byte.
 
@@ -222,7 +222,7 @@ def replay(
     force: Force = False,
     json_wanted: JsonWanted = False,
 ) -> None:
-    """Replay a recorded run: integrate it again, play it, or publish it.
+    """Replay a recorded run: integrate, play or publish it.
 
     Example: tritrack replay runs/walk
     """

@@ -163,7 +163,7 @@ def teach(
     cache: Cache = CACHE,
     json_wanted: JsonWanted = False,
 ) -> None:
-    """Teach a model one more posture, with three takes or more.
+    """Teach a model one more posture by three takes or more.
 
     The takes are recordings, or are performed before cameras (--live). Says whether the takes
     agree, and which other posture is most similar. With --again the posture is one of the model's:
@@ -212,7 +212,7 @@ def evaluate_postures(
     ] = "",
     json_wanted: JsonWanted = False,
 ) -> None:
-    """Recognise postures of people outside the training data (table 2).
+    """Recognise postures of people not learnt from (table 2).
 
     All cores track clips, with about 450 MB each. Tracking results are kept, so that a stopped
     evaluation resumes.
@@ -273,7 +273,7 @@ def evaluate_tracking(
     size: Size = None,
     json_wanted: JsonWanted = False,
 ) -> None:
-    """Track clips and compare the results with their ground truth.
+    """Track clips and compare them with their ground truth.
 
     Joints, silhouettes, lengths and confidence are measured.
 
