@@ -164,12 +164,13 @@ def test_a_recording_is_played_until_ctrl_c_and_its_page_closed(
     monkeypatch.setattr(f"{place}.LivePage", opened)
     monkeypatch.setattr(f"{place}.show", lambda *_: 7)
     said = Console(file=io.StringIO(), width=200)
+    names = tuple(f"camera {number}" for number in range(1, 9))
     told = replay_page.replay_on_page(tmp_path / "walk", 9, said)
     assert told == {"clip": "made up", "shown": 7}
     assert asked == [
         (
             ("made up", 9),
-            {
+            {"commands": False, "cameras": names, "most_bytes": 160_000_000},
                 "commands": False,
                 "cameras": tuple(f"camera {n}" for n in range(1, 9)),
                 "most_bytes": 160_000_000,
