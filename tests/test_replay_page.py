@@ -171,10 +171,6 @@ def test_a_recording_is_played_until_ctrl_c_and_its_page_closed(
         (
             ("made up", 9),
             {"commands": False, "cameras": names, "most_bytes": 160_000_000},
-                "commands": False,
-                "cameras": tuple(f"camera {n}" for n in range(1, 9)),
-                "most_bytes": 160_000_000,
-            },
         ),
         ("end", {"of": "walk", "out": str(tmp_path / "walk")}),
         "wait",
