@@ -125,9 +125,9 @@ class Tracker:
         Raises:
             CalibrationError: When the calibration cannot be used.
             SettingsError: When anything else is out of bounds, or not supported in a program's own
-            loop.
+                loop.
             ValueError: When `background` lacks an image of a camera. Both errors above are
-            ValueErrors.
+                ValueErrors.
         """
         self._settings = _settings(size, mode, landmarks, stature_m)
         self._rate_hz = float(rate_hz)
