@@ -13,7 +13,7 @@ from common.body.proportions import body_vector
 from common.bus.instant import Instant, Seen
 from common.rig.camera import Rig
 from integrator.landmarks import landmark_fusion
-from integrator.measuring.known_body import Known, Opening, Unknown
+from integrator.measuring.known_body import Known, Opening, Phase, Unknown
 from integrator.pose import smoothing
 from integrator.proposal.pose_proposal import Memory
 from integrator.rig.best_pair import Places, Two, two_of
@@ -62,7 +62,7 @@ class Posed(NamedTuple):
     """Set where one view alone shows the body."""
 
 
-class Waiting(NamedTuple):
+class Waiting(Phase, frozen=True, tag=True):
     """No person is followed; the body's measurements are kept."""
 
     body: Opening = Unknown()
@@ -78,7 +78,7 @@ class Waiting(NamedTuple):
         """No pose."""
 
 
-class Following(NamedTuple):
+class Following(Phase, frozen=True, tag=True):
     """A person who is followed, in the state of the last instant."""
 
     body: Known

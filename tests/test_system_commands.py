@@ -315,7 +315,7 @@ def test_a_clip_that_is_hardly_followed_ends_with_a_code_of_its_own(
     tritrack: Commands, clip: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """What was found is written all the same, and says so."""
-    monkeypatch.setattr("integrator.outgoing.is_believed", lambda *_: False)
+    monkeypatch.setattr("integrator.belief.is_believed", lambda *_: False)
     said = tritrack("track", clip, "--out", tmp_path)
     assert said.code == 3
     assert "believed in less than half" in said.errors[0]

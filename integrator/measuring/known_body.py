@@ -1,9 +1,19 @@
 """A person's body as far as it is known: not at all, a prior, or measured."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple, Self
+
+import msgspec
 
 from common.body.body import Bdp, Vector
 from common.body.observation import Measure, Observation
+
+
+class Phase(msgspec.Struct, frozen=True):
+    """One of several stages, which a saved state tells apart by their names."""
+
+    def _replace(self, **changes: Any) -> Self:
+        """The same with other values, as of a named tuple."""
+        return msgspec.structs.replace(self, **changes)
 
 
 class Sample(NamedTuple):
@@ -13,7 +23,7 @@ class Sample(NamedTuple):
     seen: tuple[Observation, Observation]
 
 
-class Unknown(NamedTuple):
+class Unknown(Phase, frozen=True, tag=True):
     """No person was seen yet."""
 
     @property
@@ -21,7 +31,7 @@ class Unknown(NamedTuple):
         """No lengths."""
 
 
-class Unmeasured(NamedTuple):
+class Unmeasured(Phase, frozen=True, tag=True):
     """A prior body, and the progress of its measurement."""
 
     bdp: Bdp
@@ -45,7 +55,7 @@ class Unmeasured(NamedTuple):
         return bool(self.bodies)
 
 
-class Measured(NamedTuple):
+class Measured(Phase, frozen=True, tag=True):
     """A body measured in the opening posture."""
 
     bdp: Bdp
