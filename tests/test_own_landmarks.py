@@ -117,7 +117,7 @@ def test_a_person_whose_legs_did_not_move_is_found_whole_in_the_whole_picture() 
     ankles = [JOINT_NAMES.index(name) for name in ("l_ankle", "r_ankle")]
     assert apart[ankles].max() < 0.05
     assert told.person is not None
-    assert overlap(told.person.over(0.5, (240, 320)) > 0, acted()[0].masks[0]) > 0.75
+    assert overlap(told.person.over((240, 320), 0.5)[0] > 0, acted()[0].masks[0]) > 0.75
 
 
 def test_the_network_sees_the_person_where_they_are_and_nothing_outside_of_its_window() -> None:
@@ -126,11 +126,11 @@ def test_the_network_sees_the_person_where_they_are_and_nothing_outside_of_its_w
     for turn_deg in (0.0, 30.0):
         window = turned_window_of(mask, turn_deg)
         found = find(planes_of(picture, None, window))
-        person = PersonMask(found.mask, window).over(0.5, picture.shape) > 0
+        person = PersonMask(found.mask, window).over(picture.shape, 0.5)[0] > 0
         assert person.shape == mask.shape
         assert overlap(person, mask) > 0.7
     few = PersonMask(np.full((48, 48), 9.0, np.float32), Window(100, 60, 96))
-    rows, columns = np.nonzero(few.over(0.5, (240, 320)))
+    rows, columns = np.nonzero(few.over((240, 320), 0.5)[0])
     assert (rows.min(), rows.max(), columns.min(), columns.max()) == pytest.approx(
         (60, 155, 100, 195), abs=1
     )

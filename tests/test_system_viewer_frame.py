@@ -19,8 +19,8 @@ from viewer.background import moved_camera
 from viewer.background.background import Background, learn
 from viewer.background.moved_objects import Patch
 from viewer.captured_frame import CapturedFrame
-from viewer.landmarks.own_landmarks import Told
-from viewer.room.outline_correction import Corrected
+from viewer.landmarks.own_landmarks import LandmarkResult
+from viewer.room.silhouette_correction import Corrected
 from viewer.silhouette import silhouette
 from viewer.silhouette.silhouette import Seen
 
@@ -200,7 +200,7 @@ class Stages:
             self.told["near_px"] = near_px
             return state._replace(frames=state.frames + 5), self.seen
 
-        def corrected(seen: Seen, told: Told, least_share: float) -> Corrected:
+        def corrected(seen: Seen, told: LandmarkResult, least_share: float) -> Corrected:
             self.told["corrected"] = (seen, told.landmarks, least_share)
             if not things:
                 return Corrected(seen, None, is_changed=False)

@@ -39,7 +39,7 @@ from common.rig.camera import project
 from viewer import landmark_step, track
 from viewer.background.background import learn
 from viewer.captured_frame import CapturedFrame
-from viewer.landmarks.own_landmarks import Told
+from viewer.landmarks.own_landmarks import LandmarkResult
 from viewer.paper import pose_search
 
 
@@ -350,9 +350,9 @@ def looks_of(monkeypatch: pytest.MonkeyPatch, alone: bool) -> tuple[track.State,
     that was in the mirror too."""
     looks: list[bool] = []
 
-    def look(*given: Any, **_: Any) -> Told:
+    def look(*given: Any, **_: Any) -> LandmarkResult:
         looks.append(given[3].twice)
-        return Told(landmarks_of(standing()))
+        return LandmarkResult(landmarks_of(standing()))
 
     monkeypatch.setattr(landmark_step, "own_landmarks", look)
     setup = told_from_outside().setup

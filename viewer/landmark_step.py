@@ -8,7 +8,7 @@ from common.config.settings import Settings
 from viewer.captured_frame import CapturedFrame
 from viewer.landmarks.landmark_looks import network_of
 from viewer.landmarks.outside_source import nearest_landmarks
-from viewer.landmarks.own_landmarks import LandmarkModel, Told, own_landmarks
+from viewer.landmarks.own_landmarks import LandmarkModel, LandmarkResult, own_landmarks
 from viewer.silhouette.silhouette import Seen
 
 SEARCH_S: Final = 0.5
@@ -26,7 +26,7 @@ class State(NamedTuple):
 
 def step(
     state: State, frame: CapturedFrame, seen: Seen, settings: Settings, *, alone: bool
-) -> tuple[State, Told]:
+) -> tuple[State, LandmarkResult]:
     """The landmarks of a frame: our own network's, or those that an outside source sent with it.
 
     A frame that comes late is skipped, and keeps what is known. A single view has no other to rely
@@ -40,12 +40,12 @@ def step(
         alone: The viewer is the only one of its run.
     """
     if not settings.looks_itself:
-        told = Told(nearest_landmarks(frame.landmarks, seen.box))
-        return State(told.landmarks), told
+        result = LandmarkResult(nearest_landmarks(frame.landmarks, seen.box))
+        return State(result.landmarks), result
     if frame.hurried and not alone:
-        return state, Told(None)
+        return state, LandmarkResult(None)
     model = LandmarkModel(network_of(settings.landmarks), alone and not frame.hurried)
     searches = not frame.hurried and frame.captured_s >= state.searched_s + SEARCH_S
-    told = own_landmarks(frame.picture, seen, state.known, model, searches=searches)
+    result = own_landmarks(frame.picture, seen, state.known, model, searches=searches)
     searched_s = frame.captured_s if searches else state.searched_s
-    return State(told.landmarks, searched_s), told
+    return State(result.landmarks, searched_s), result

@@ -21,10 +21,10 @@ from viewer.background.moved_objects import Patch
 from viewer.background.turned_picture import lens_of, turned_background
 from viewer.captured_frame import CapturedFrame
 from viewer.expected_body import expected_body
-from viewer.landmarks.own_landmarks import Told
+from viewer.landmarks.own_landmarks import LandmarkResult
 from viewer.paper import pose_search
 from viewer.paper.measure import opening_measure
-from viewer.room.outline_correction import corrected, is_trusted
+from viewer.room.silhouette_correction import corrected, is_trusted
 from viewer.silhouette import silhouette
 from viewer.silhouette.silhouette import Seen
 from viewer.stick.standing_height import Standing
@@ -152,17 +152,17 @@ def look(state: State, frame: CapturedFrame, guide: Guide | None) -> tuple[State
         return state, msgspec.structs.replace(view, fault=fault), mask_of(view)
     state = _followed(_patched(state, frame.index), frame)
     remembered, seen = silhouette.step(state.silhouette, frame.picture, _near_px(state, guide))
-    setup, known, told = state.setup, state.landmarks, Told(None)
+    setup, known, result = state.setup, state.landmarks, LandmarkResult(None)
     if setup.method.landmarks:
-        known, told = landmark_step.step(known, frame, seen, setup.settings, alone=setup.alone)
+        known, result = landmark_step.step(known, frame, seen, setup.settings, alone=setup.alone)
     least_share = setup.settings.silhouette.min_height_share
-    held = corrected(seen, told, least_share)
+    held = corrected(seen, result, least_share)
     if held.is_changed:
         remembered = silhouette.without_things(
             remembered, state.silhouette, frame.picture, held.things
         )
     seen = held.seen
-    view = _view_of(setup.viewer, frame, seen, told.landmarks)
+    view = _view_of(setup.viewer, frame, seen, result.landmarks)
     if state.moved is not None:
         view = msgspec.structs.replace(view, shift=state.moved.shift)
     state = state._replace(silhouette=remembered, near_px=_middle_px(seen.box), landmarks=known)

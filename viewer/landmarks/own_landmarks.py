@@ -90,12 +90,13 @@ class PersonMask(NamedTuple):
     """(CELLS, CELLS)"""
     window: Window
 
-    def over(self, probability: float, shape: tuple[int, ...]) -> NDArray[np.uint8]:
-        """(H, W) 1 where the person is at least so probable; 0 outside of the window.
+    def over(self, shape: tuple[int, ...], *probabilities: float) -> list[NDArray[np.uint8]]:
+        """For each probability (H, W) 1 where the person is at least so probable; 0 outside of the
+        window.
 
         Args:
-            probability: Between 0 and 1.
             shape: Of the picture, (H, W, ...).
+            probabilities: Between 0 and 1.
         """
         high, wide = shape[:2]
         cells = len(self.logits) - 1.0
@@ -105,12 +106,12 @@ class PersonMask(NamedTuple):
             corners.astype(np.float32),
             (self.window.in_picture(in_planes) - 0.5).astype(np.float32),
         )
-        least = math.log(probability / (1.0 - probability))
         logits = cv2.warpAffine(self.logits, onto, (wide, high), borderValue=-math.inf)
-        return (logits >= least).astype(np.uint8)
+        least = (math.log(each / (1.0 - each)) for each in probabilities)
+        return [(logits >= each).astype(np.uint8) for each in least]
 
 
-class Told(NamedTuple):
+class LandmarkResult(NamedTuple):
     """What the network makes of a frame."""
 
     landmarks: Landmarks | None
@@ -126,19 +127,19 @@ def own_landmarks(
     eye: LandmarkModel = LandmarkModel(),
     *,
     searches: bool = False,
-) -> Told:
+) -> LandmarkResult:
     """What the network makes of a picture.
 
     It looks where the silhouette is, in a window as upright as the trunk was in the frame before.
     Where it is not sure there, or saw a person elsewhere the frame before, it also looks there,
-    without the silhouette; where it knows of no person, in all of the picture. A silhouette is of
-    what changed: of a person whose legs stay it lacks them, and the window that it gives does too.
-    A trunk that leans in its window is looked at again,
-    upright: photographs taught the network such. Of synthetic people who lean by 60 to 180 degrees
-    60 % of the joints are within a tenth of the stature as they are, 74 % looked at again, 80 %
-    once the lean is known, and the facing about the trunk is less than 45 degrees off in 97 % of
-    those who are seen from a side. The surest look is believed; where that shows no person, but a
-    silhouette, of a door or of light, confidences are 0.
+    without the silhouette; where it knows of no person, in all of the picture. A silhouette shows
+    what changed: it lacks legs that stay where they are, and so does the window about it. A trunk
+    that leans in its window is looked at again, upright: photographs taught the network such. Of
+    synthetic people who lean by 60 to 180 degrees 60 % of the joints are within a tenth of the
+    stature as they are, 74 % looked at again, 80 % once the lean is known, and the facing about the
+    trunk is less than 45 degrees off in 97 % of those who are seen from a side. The surest look is
+    believed; where that shows no person, but a silhouette, of a door or of light, confidences are
+    0.
 
     Args:
         picture: (H, W, 3) the working picture.
@@ -148,20 +149,17 @@ def own_landmarks(
         searches: All of the picture is looked at too, whatever is known.
     """
     known = None if before is None else _about(np.array(before.joints_px), before.confidence)
-    best = _surest(picture, seen, known, eye)
-    if searches:
-        best = _anywhere(picture, best, eye)
-    best = _set_upright(picture, best, eye)
+    best = _set_upright(picture, _surest(picture, seen, known, eye, searches), eye)
     if seen.box is None and (best.nobody > 0.5 or best.surety < LEAST):
-        return Told(None)
+        return LandmarkResult(None)
     if best.surety < SURE and best.nobody > EMPTY:
         best = best._replace(confidence=np.zeros_like(best.confidence), facing=(0.0, 0.0))
-    return Told(_told(best), PersonMask(best.person, best.window))
+    return LandmarkResult(_told(best), PersonMask(best.person, best.window))
 
 
 def found_anywhere(picture: Image, eye: LandmarkModel = TWICE) -> tuple[Landmarks, float]:
     """A person in a picture (H, W, 3) of which nothing is known, and how probably no person is."""
-    best = _set_upright(picture, _any_way_up(picture, _search(picture, eye), eye), eye)
+    best = _set_upright(picture, _any_way_up(picture, _anywhere(picture, None, eye), eye), eye)
     return _told(best), best.nobody
 
 
@@ -193,7 +191,9 @@ def _told(best: _Look) -> Landmarks:
     )
 
 
-def _surest(picture: Image, seen: Seen, known: Window | None, eye: LandmarkModel) -> _Look:
+def _surest(
+    picture: Image, seen: Seen, known: Window | None, eye: LandmarkModel, searches: bool
+) -> _Look:
     """The surest look, the first of them where that is sure.
 
     Args:
@@ -201,6 +201,7 @@ def _surest(picture: Image, seen: Seen, known: Window | None, eye: LandmarkModel
         seen: The silhouette in it.
         known: About where a person was the frame before.
         eye: How it is looked at.
+        searches: As in `own_landmarks`.
     """
     looks = []
     turn_deg = 0.0 if known is None else known.turn_deg
@@ -209,21 +210,28 @@ def _surest(picture: Image, seen: Seen, known: Window | None, eye: LandmarkModel
         looks.append(_look(picture, seen.mask, window, eye))
     is_elsewhere = known is not None and bool(looks) and not same_place(looks[0].window, known)
     if not looks or looks[0].surety < SURE or is_elsewhere:
-        away = _search(picture, eye) if known is None else _look(picture, None, known, eye)
-        looks.append(away)
-    best = max(looks, key=SUREST)
+        if known is None:
+            searches = True
+        else:
+            looks.append(_look(picture, None, known, eye))
+    best = max(looks, key=SUREST, default=None)
+    if searches or best is None:
+        best = _anywhere(picture, best, eye)
     if seen.box is None or not turn_deg or best.surety >= SURE:
         return best
     return max(best, _look(picture, seen.mask, window_of(seen.box), eye), key=SUREST)
 
 
-def _anywhere(picture: Image, best: _Look, eye: LandmarkModel) -> _Look:
-    """A look, or a surer one at a person whom all of the picture shows elsewhere."""
-    far = _look(picture, None, whole(picture.shape), eye)
-    window = _about(far.joints_px, tuple(far.confidence))
-    if window is None or same_place(window, best.window):
-        return best
-    return max(best, _look(picture, None, window, eye), key=SUREST)
+def _anywhere(picture: Image, known: _Look | None, eye: LandmarkModel) -> _Look:
+    """A person anywhere: first in all of the picture, then closer, unless that is where a sure look
+    was taken; the known look, where that is surer."""
+    found = _look(picture, None, whole(picture.shape), eye)
+    window = _about(found.joints_px, tuple(found.confidence))
+    if window is not None:
+        if known is not None and known.surety >= SURE and same_place(window, known.window):
+            return known
+        found = _look(picture, None, window, eye)
+    return found if known is None else max(known, found, key=SUREST)
 
 
 def _any_way_up(picture: Image, look: _Look, eye: LandmarkModel) -> _Look:
@@ -251,13 +259,6 @@ def _look(picture: Image, mask: Mask | None, window: Window, eye: LandmarkModel)
     facing, second = (found.facing_deg, found.facing_confidence), found.second_confidence
     sure, nobody = found.confidence, found.nobody
     return _Look(mask, window, joints_px, sure, facing, nobody, second_px, second, found.mask)
-
-
-def _search(picture: Image, eye: LandmarkModel) -> _Look:
-    """A person anywhere: first in all of the picture, then closer."""
-    far = _look(picture, None, whole(picture.shape), eye)
-    window = _about(far.joints_px, tuple(far.confidence))
-    return far if window is None else _look(picture, None, window, eye)
 
 
 def _about(joints_px: Places, confidence: tuple[float, ...]) -> Window | None:

@@ -1,4 +1,5 @@
-"""A silhouette held against the landmarks: what is far from the body goes, bones are added."""
+"""A silhouette compared with the landmark network: what lies beside the person goes, what it lacks
+is added."""
 
 from typing import Final, NamedTuple
 
@@ -17,7 +18,7 @@ from viewer.landmarks.body_region import (
     shown,
     stature_px,
 )
-from viewer.landmarks.own_landmarks import PersonMask, Told
+from viewer.landmarks.own_landmarks import LandmarkResult, PersonMask
 from viewer.silhouette.silhouette import Seen, seen_of
 
 TRUSTED: Final = 0.5
@@ -62,20 +63,20 @@ class Corrected(NamedTuple):
     is_changed: bool
 
 
-def corrected(seen: Seen, told: Told, least_share: float) -> Corrected:
+def corrected(seen: Seen, result: LandmarkResult, least_share: float) -> Corrected:
     """A silhouette without what is no body, and with what is missing of it.
 
     Args:
         seen: The silhouette of a frame.
-        told: Landmarks of the same frame; None, or unsure: the silhouette stands. Our own network
+        result: Landmarks of the same frame; None, or unsure: the silhouette stands. Our own network
             also shows where the person is; of an outside source's person the bones alone are known.
         least_share: Of the picture's height; a lower silhouette is no person's.
     """
-    landmarks, mask = told.landmarks, seen.mask.view(np.uint8)
+    landmarks, mask = result.landmarks, seen.mask.view(np.uint8)
     if landmarks is None:
         return Corrected(seen, None, is_changed=False)
-    if told.person is not None:
-        body, things = _by_person(mask, landmarks, told.person)
+    if result.person is not None:
+        body, things = _by_person(mask, landmarks, result.person)
     else:
         body, things = _by_bones(mask, landmarks)
     if body is mask:
@@ -89,7 +90,7 @@ def _by_person(mask: Bytes, landmarks: Landmarks, person: PersonMask) -> tuple[B
     if that is little. The silhouette itself where both agree, or the network is not sure."""
     if np.mean(landmarks.confidence) < SEEN:
         return mask, None
-    possible, likely = (person.over(share, mask.shape) for share in (POSSIBLE, LIKELY))
+    possible, likely = person.over(mask.shape, POSSIBLE, LIKELY)
     near, known = cv2.bitwise_and(mask, possible), cv2.bitwise_and(mask, likely)
     beside = cv2.countNonZero(mask) - cv2.countNonZero(near)
     lacking = cv2.countNonZero(likely) - cv2.countNonZero(known)

@@ -10,8 +10,8 @@ from test_own_landmarks import acted, nobody, seen
 from common.body.observation import Landmarks
 from common.raster.similarity import Mask
 from viewer.landmarks.landmark_window import Window
-from viewer.landmarks.own_landmarks import PersonMask, Told
-from viewer.room.outline_correction import _covered, _distance_2, _far_share, corrected
+from viewer.landmarks.own_landmarks import LandmarkResult, PersonMask
+from viewer.room.silhouette_correction import _covered, _distance_2, _far_share, corrected
 
 
 def iou(one: Mask, other: Mask) -> float:
@@ -41,28 +41,28 @@ def without_legs() -> tuple[Mask, Mask]:
 
 def test_a_whole_outline_stays_as_it_is() -> None:
     own = seen(acted()[0].masks[0])
-    held = corrected(own, Told(true_landmarks()), 0.15)
+    held = corrected(own, LandmarkResult(true_landmarks()), 0.15)
     assert held.seen is own
     assert not held.is_changed
 
 
 def test_a_door_goes_and_is_told_to_be_a_thing() -> None:
     cluttered, mask = with_door()
-    held = corrected(seen(cluttered), Told(true_landmarks()), 0.15)
+    held = corrected(seen(cluttered), LandmarkResult(true_landmarks()), 0.15)
     assert iou(held.seen.mask, mask) > 0.9 > iou(cluttered, mask)
     assert held.things is not None
     assert held.things[100, 20] == 1
     assert not (held.things[mask]).any()
 
 
-def true_person(confidence: float = 0.9) -> Told:
+def true_person(confidence: float = 0.9) -> LandmarkResult:
     """The network sees the person as they are, in cells of a window of all of the picture."""
     window = Window(0, -40, 320)
     cells = cv2.resize(acted()[0].masks[0].astype(np.float32), (320, 240))
     square = cv2.copyMakeBorder(cells, 40, 40, 0, 0, cv2.BORDER_CONSTANT)
     logits = 12.0 * cv2.resize(square, (48, 48), interpolation=cv2.INTER_AREA) - 6.0
     sure = msgspec.structs.replace(true_landmarks(), confidence=(confidence,) * 15)
-    return Told(sure, PersonMask(logits, window))
+    return LandmarkResult(sure, PersonMask(logits, window))
 
 
 def test_a_shadow_beside_the_body_goes_where_the_network_does_not_see_the_person() -> None:
@@ -70,7 +70,7 @@ def test_a_shadow_beside_the_body_goes_where_the_network_does_not_see_the_person
     mask = acted()[0].masks[0]
     shaded = mask | np.roll(mask, round(0.2 * acted()[2]), axis=1)
     own = seen(shaded)
-    assert not corrected(own, Told(true_landmarks()), 0.15).is_changed
+    assert not corrected(own, LandmarkResult(true_landmarks()), 0.15).is_changed
     held = corrected(own, true_person(), 0.15)
     assert iou(held.seen.mask, mask) > 0.75 > iou(shaded, mask) + 0.1
     assert held.things is not None
@@ -95,7 +95,7 @@ def test_where_the_network_is_not_sure_the_silhouette_stands() -> None:
 
 def test_legs_of_the_floors_colour_come() -> None:
     ragged, mask = without_legs()
-    held = corrected(seen(ragged), Told(true_landmarks()), 0.15)
+    held = corrected(seen(ragged), LandmarkResult(true_landmarks()), 0.15)
     assert iou(held.seen.mask, mask) > 0.75 > iou(ragged, mask)
     assert held.seen.box is not None
     assert held.things is None
@@ -103,25 +103,25 @@ def test_legs_of_the_floors_colour_come() -> None:
 
 def test_somebody_of_the_walls_colour_gets_an_outline() -> None:
     mask = acted()[0].masks[0]
-    held = corrected(nobody(), Told(true_landmarks()), 0.15)
+    held = corrected(nobody(), LandmarkResult(true_landmarks()), 0.15)
     assert iou(held.seen.mask, mask) > 0.6
 
 
 def test_unsure_landmarks_change_nothing() -> None:
     for mask, _ in (with_door(), without_legs()):
-        assert not corrected(seen(mask), Told(unsure()), 0.15).is_changed
-    assert not corrected(seen(mask), Told(None), 0.15).is_changed
+        assert not corrected(seen(mask), LandmarkResult(unsure()), 0.15).is_changed
+    assert not corrected(seen(mask), LandmarkResult(None), 0.15).is_changed
 
 
 def test_a_door_goes_though_no_ankle_is_seen() -> None:
     cluttered, mask = with_door()
-    held = corrected(seen(cluttered), Told(without("l_ankle", "r_ankle")), 0.15)
+    held = corrected(seen(cluttered), LandmarkResult(without("l_ankle", "r_ankle")), 0.15)
     assert iou(held.seen.mask, mask) > 0.85 > iou(cluttered, mask)
 
 
 def test_landmarks_that_tell_no_size_overrule_nothing() -> None:
     own = seen(with_door()[0])
-    assert corrected(own, Told(without("pelvis", "l_knee", "r_knee")), 0.15).seen is own
+    assert corrected(own, LandmarkResult(without("pelvis", "l_knee", "r_knee")), 0.15).seen is own
 
 
 def plain_distance(x: float, y: float, ends: np.ndarray) -> float:
