@@ -302,6 +302,19 @@ def test_a_search_looks_closer_only_where_it_finds_another_place(
     assert told.landmarks.confidence[0] == 0.8
 
 
+def test_a_person_unsurely_seen_with_the_silhouette_is_looked_at_closer_in_the_same_place(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Without the silhouette: a shadow may be in it."""
+    inside_px = np.linspace((104.0, 67.0), (156.0, 193.0), 15)
+    there = (inside_px - np.array([WHOLE.left, WHOLE.top])) * (192 / WHOLE.side)
+    looks = Looks(monkeypatch, looked(0.49), looked(0.4, joints=there), looked(0.6))
+    result = own_landmarks(PICTURE, seen(BOXED), None)
+    assert [is_masked for _, is_masked in looks.shown] == [True, False, False]
+    assert result.landmarks is not None
+    assert result.landmarks.confidence[0] == 0.6
+
+
 @pytest.mark.parametrize(("first", "best"), [(0.49, 0.6), (0.49, 0.3)])
 def test_an_unsure_look_is_held_against_all_of_the_picture(
     monkeypatch: pytest.MonkeyPatch, first: float, best: float

@@ -87,6 +87,20 @@ def test_what_a_silhouette_lacks_of_the_person_is_added_and_a_whole_one_stays() 
     assert corrected(whole, true_person(), 0.15).seen is whole
 
 
+def test_a_pixel_that_may_be_the_person_stays_and_is_not_added() -> None:
+    """The right half of the picture is .3 likely, the left not at all; a person in neither."""
+    logits = np.full((48, 48), -6.0, np.float32)
+    logits[:, 24:] = np.log(0.3 / 0.7)
+    given = LandmarkResult(true_person().landmarks, PersonMask(logits, Window(0, -40, 320)))
+    mask = np.zeros((240, 320), np.bool_)
+    mask[60:200, 100:220] = True
+    held = corrected(seen(mask), given, 0.15)
+    assert held.seen.box is not None
+    assert held.seen.box.left == pytest.approx(160, abs=4)
+    assert held.seen.box.right == 219
+    assert not (held.seen.mask & ~mask).any()
+
+
 def test_where_the_network_is_not_sure_the_silhouette_stands() -> None:
     own = seen(without_legs()[0])
     assert corrected(own, true_person(0.29), 0.15).seen is own
