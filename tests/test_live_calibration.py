@@ -118,10 +118,11 @@ def test_only_two_views_with_landmarks_and_no_calibration_are_calibrated_by_the_
 
 
 @pytest.mark.slow
+@pytest.mark.live
 def test_a_live_run_is_calibrated_by_its_person_and_is_replayed_byte_for_byte(
     data_dir: Path, tmp_path: Path
 ) -> None:
-    """Half a minute, for a machine that is busy: a quiet one needs nine seconds."""
+    """Half a minute of walking: a quiet machine needs nine seconds of it."""
     pytest.importorskip("mcap", reason="pip install 'tritrack[mcap]'")
     joined(tmp_path / "clip", sorted((data_dir / "dev").glob("r01_*"))[:8])
     settings = free_settings(Settings(clip=str(tmp_path / "clip"), page=PageSettings(port=0)))

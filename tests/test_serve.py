@@ -225,6 +225,8 @@ def test_sites_go_on_where_the_zygotes_are_killed_that_they_and_their_parts_came
         before = {name: service.all_of(own, name) for name in ("hall", "lobby")}
         hall = service.supervisor_of(own, "hall")
         zygotes = [zygote_of(own), zygote_of(hall)]
+        # The decoders before that read the background, and end.
+        service.until("the hall to have begun", lambda: service.frames("hall") > 0)
         service.until("two decoders", lambda: len(zygotes[1].children()) == 2)
         decoders = [one.pid for one in zygotes[1].children()]
         for zygote in zygotes:
