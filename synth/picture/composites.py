@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 from common.body.body import OTHER_SIDE, Vector
 from synth.picture.backdrops import SIDE_PX as BACKDROP_PX
 from synth.picture.backdrops import Backdrop
+from synth.picture.furniture import Place
+from synth.picture.obstacles import Layers, beside, coated, covered, hidden_by, obstructed
 from synth.picture.picture_examples import SIDE_PX, PictureExample
 
 Floats = NDArray[np.float32]
@@ -23,6 +25,11 @@ BEHIND_SHARE, BEFORE_SHARE = 0.15, 0.04
 """Share of pictures with another person behind or before the person."""
 SHADOW_SHARE, HIDDEN_SHARE, BORDER_SHARE = 0.35, 0.12, 0.12
 """Shares with the person's shadow, with an object before the person, with the picture's border."""
+CLOTH_SHARE, THING_SHARE, PASSER_SHARE = 0.35, 0.65, 0.2
+"""Shares of the obstructed pictures with long cloth over the legs, with a thing before the person,
+and with another person partly before the person."""
+VISIBLE: Final = 0.3
+"""A thing or another person that leaves less of the person than this share is left away."""
 COARSEST: Final = 1.3
 """Logarithm of the ratio by which a picture is coarser than the window."""
 COARSE_SHARE, SMEARED_SHARE, GREY_SHARE, JPEG_SHARE = 0.6, 0.15, 0.25, 0.3
@@ -54,19 +61,15 @@ class Composite(NamedTuple):
     nobody: bool
 
 
-class _Layers(NamedTuple):
-    picture: Floats
-    outline: NDArray[np.uint8]
-    """1 inside the silhouette, 0 outside."""
-    mask: NDArray[np.uint8]
-    """1 where the person is visible, 0 elsewhere."""
-
-
 Draw = Callable[[], PictureExample]
 
 
 def composite(
-    example: PictureExample, other: Draw, backdrop: Callable[[], Backdrop], rng: np.random.Generator
+    example: PictureExample,
+    other: Draw,
+    backdrop: Callable[[], Backdrop],
+    rng: np.random.Generator,
+    obstructed_share: float = 0.0,
 ) -> Composite:
     """One of many random pictures of an example.
 
@@ -75,15 +78,25 @@ def composite(
         other: Gives another person.
         backdrop: Gives a backdrop.
         rng: Source of all choices.
+        obstructed_share: Share of the pictures in which furniture, something that is pushed or
+            carried, another person or long cloth hides a part of the person. All other choices
+            are the same without it.
     """
+    aside = rng.spawn(1)[0]
+    is_obstructed = bool(aside.random() < obstructed_share)
+    if is_obstructed and aside.random() < CLOTH_SHARE:
+        example = coated(example, aside)
     nobody = bool(rng.random() < NOBODY_SHARE)
     whole = example.body.astype(np.float32) * np.float32(not nobody)
     coverage, body = whole[..., 3:] / np.float32(255), _lit(whole[..., :3], rng)
     behind = _shadowed(_behind(body, coverage, other, backdrop, rng), coverage, rng)
     picture: Floats = behind * (np.float32(1) - coverage) + body
     mask = (coverage[..., 0] > 0.5).astype(np.uint8)
-    layers = _before(_Layers(picture, example.outline.copy(), mask), other, rng)
-    layers = _hidden(layers, backdrop, rng)
+    layers = _before(Layers(picture, example.outline.copy(), mask), other, rng)
+    if rng.random() < HIDDEN_SHARE:
+        layers = covered(layers, lambda: _cut(backdrop(), rng), rng)
+    if is_obstructed:
+        layers = _obstructed(layers, example, other, backdrop, aside)
     layers, joints, facing, larger = _turned(layers, example, rng)
     inside = ((joints > 0) & (joints < SIDE_PX)).all(axis=1)
     edge = _border(rng)
@@ -134,13 +147,13 @@ def _behind(
     return _over(behind, _elsewhere(other(), rng)) if rng.random() < BEHIND_SHARE else behind
 
 
-def _before(layers: _Layers, other: Draw, rng: np.random.Generator) -> _Layers:
+def _before(layers: Layers, other: Draw, rng: np.random.Generator) -> Layers:
     """Another person before the person; the silhouette stays as it is."""
     if rng.random() >= BEFORE_SHARE:
         return layers
     body = _elsewhere(other(), rng)
     mask = layers.mask * (body[..., 3] < 127.5)
-    return _Layers(_over(layers.picture, body), layers.outline, mask.astype(np.uint8))
+    return Layers(_over(layers.picture, body), layers.outline, mask.astype(np.uint8))
 
 
 def _elsewhere(other: PictureExample, rng: np.random.Generator) -> Floats:
@@ -170,28 +183,26 @@ def _shadowed(behind: Floats, coverage: Floats, rng: np.random.Generator) -> Flo
     return np.asarray(behind * (1.0 - rng.uniform(0.1, 0.6) * soft), np.float32)
 
 
-def _hidden(layers: _Layers, backdrop: Callable[[], Backdrop], rng: np.random.Generator) -> _Layers:
-    """An object before the person: a table's edge, a box."""
-    if rng.random() >= HIDDEN_SHARE:
-        return layers
-    over = np.zeros((SIDE_PX, SIDE_PX), np.bool_)
-    if rng.random() < 0.5:
-        over[int(rng.uniform(0.5, 0.95) * SIDE_PX) :] = True
-    else:
-        (left, top), (wide, high) = (
-            rng.integers(0, SIDE_PX, 2),
-            rng.integers(SIDE_PX // 16, SIDE_PX * 2 // 5, 2),
-        )
-        over[top : top + high, left : left + wide] = True
-    picture = np.where(over[..., None], _cut(backdrop(), rng), layers.picture)
-    outline = layers.outline * ~over if rng.random() < 0.6 else layers.outline
-    mask = (layers.mask * ~over).astype(np.uint8)
-    return _Layers(np.asarray(picture, np.float32), outline.astype(np.uint8), mask)
+def _obstructed(
+    layers: Layers,
+    example: PictureExample,
+    other: Draw,
+    backdrop: Callable[[], Backdrop],
+    rng: np.random.Generator,
+) -> Layers:
+    """A thing before the person, another person partly so, or nothing but the cloth."""
+    chance, after = rng.random(), layers
+    if chance < THING_SHARE:
+        place = Place(example.joints_px, example.stature_px)
+        after = obstructed(layers, place, _cut(backdrop(), rng), rng)
+    elif chance < THING_SHARE + PASSER_SHARE:
+        after = hidden_by(layers, beside(other(), rng), bool(rng.random() < 0.5))
+    return after if after.mask.sum() >= VISIBLE * layers.mask.sum() else layers
 
 
 def _turned(
-    layers: _Layers, example: PictureExample, rng: np.random.Generator
-) -> tuple[_Layers, Floats, Floats, float]:
+    layers: Layers, example: PictureExample, rng: np.random.Generator
+) -> tuple[Layers, Floats, Floats, float]:
     """Random rotation, scale, shift and mirroring of everything, with its joints and facing."""
     larger = float(np.exp(rng.uniform(-LARGER, LARGER)))
     middle = (SIDE_PX / 2 - 0.5, SIDE_PX / 2 - 0.5)
@@ -209,7 +220,7 @@ def _turned(
     joints = (example.joints_px - 0.5) @ warp[:, :2].T + warp[:, 2] + 0.5
     facing = example.facing * (np.array([-1.0, 1.0]) if mirrored else 1.0)
     own = joints[OTHER_SIDE] if mirrored else joints
-    layers = _Layers(np.asarray(picture, np.float32), outline, mask)
+    layers = Layers(np.asarray(picture, np.float32), outline, mask)
     return layers, own.astype(np.float32), facing.astype(np.float32), larger
 
 
