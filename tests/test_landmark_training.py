@@ -11,6 +11,7 @@ from numpy_torch import importable, numpy_torch
 from rich.console import Console
 
 from lab.landmark_lessons.picture_store import Part, PictureStore, draw
+from synth.picture import composites
 from synth.picture.picture_examples import PictureExample, picture_examples
 
 QUIET = Console(quiet=True)
@@ -60,6 +61,21 @@ def test_the_same_batch_is_made_up_of_the_same_pictures(training: Any, people: P
     first, again, other = (wanted(training, people, batch) for batch in (3, 3, 4))
     assert all(np.array_equal(a.picture, b.picture) for a, b in zip(first, again, strict=True))
     assert not np.array_equal(first[0].picture, other[0].picture)
+
+
+def test_something_stands_before_a_third_of_the_people(
+    training: Any, people: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    calls, obstructed = [], composites._obstructed
+
+    def counted(*given: Any) -> Any:
+        calls.append(1)
+        return obstructed(*given)
+
+    monkeypatch.setattr(composites, "_obstructed", counted)
+    monkeypatch.setattr(training, "BATCH", 120)
+    wanted(training, people, 0)
+    assert 0.2 < len(calls) / 120 < 0.5
 
 
 def begun(training: Any) -> Any:
@@ -243,12 +259,13 @@ def test_a_batch_follows_from_its_wish(untrained: Any, monkeypatch: pytest.Monke
     monkeypatch.setattr(untrained, "_opened", lambda folders: Store(range(1000)))
     monkeypatch.setattr(untrained, "_backdrops", lambda seed: Store(range(-1000, 0)))
     monkeypatch.setattr(
-        untrained, "composite", lambda one, other, backdrop, _: (one, other(), backdrop())
+        untrained, "composite", lambda one, other, back, _, share: (one, other(), back(), share)
     )
     found = untrained.composed(untrained.Wanted((Path("a"),), 5, 3))
     rng = np.random.default_rng([5, 3, 81])
     due = [[int(rng.integers(1000)) for _ in range(3)] for _ in range(32)]
-    assert found == [(one, other, behind - 1000) for one, other, behind in due]
+    share = untrained.OBSTRUCTED
+    assert found == [(one, other, behind - 1000, share) for one, other, behind in due]
 
 
 def test_a_training_says_what_it_wrote_and_how_good_that_is(

@@ -40,6 +40,8 @@ BACKDROPS: Final = 2_400
 HELD_BACK: Final = 100
 """People who are drawn to tell how good the network is, and not learnt from."""
 BATCH: Final = 32
+OBSTRUCTED: Final = 0.35
+"""Share of the pictures in which something stands before the person, or long cloth hides legs."""
 BATCHES, HEAD_BATCHES = 2_400, 450
 """By which heads and trunk learn, and after that the heads anew on the trunk that then stays."""
 KEPT: Final = 0.5
@@ -127,7 +129,9 @@ def composed(wanted: Wanted) -> list[Composite]:
     store, backdrops = _opened(wanted.folders), _backdrops(wanted.seed)
     rng = np.random.default_rng([wanted.seed, wanted.batch, 81])
     return [
-        composite(store.any(rng), lambda: store.any(rng), lambda: backdrops.any(rng), rng)
+        composite(
+            store.any(rng), lambda: store.any(rng), lambda: backdrops.any(rng), rng, OBSTRUCTED
+        )
         for _ in range(BATCH)
     ]
 
