@@ -9,9 +9,10 @@ from common.body.body import JOINT_NAMES
 from synth.picture import composites, obstacles
 from synth.picture.backdrops import SIDE_PX as BACKDROP_PX
 from synth.picture.composites import VISIBLE, Composite, composite
-from synth.picture.furniture import THINGS, Place, blank
 from synth.picture.obstacles import Layers, beside, coated, hidden_by
 from synth.picture.picture_examples import SIDE_PX, PictureExample, picture_examples
+from synth.things.furniture import THINGS
+from synth.things.shade import Place
 
 FLAT = np.full((BACKDROP_PX, BACKDROP_PX, 3), 128, np.uint8)
 WRISTS = [JOINT_NAMES.index(name) for name in ("l_wrist", "r_wrist")]
@@ -31,7 +32,7 @@ def standing() -> Place:
     for name in JOINT_NAMES:
         part, to = name[2:] if name[:2] in ("l_", "r_") else name, {"l_": 1, "r_": -1}
         joints.append((64 + to.get(name[:2], 0) * aside.get(part, 0), rows[part]))
-    return Place(np.array(joints, np.float32), 100.0)
+    return Place(np.array(joints, np.float32), 100.0, SIDE_PX)
 
 
 def made(seed: int, share: float) -> Composite:
@@ -196,4 +197,3 @@ def test_hands_are_before_the_cloth() -> None:
 
 def test_the_persons_floor_is_below_the_lowest_joint() -> None:
     assert standing().floor() == 106.0 + 4.0
-    assert blank().shape == (SIDE_PX, SIDE_PX)

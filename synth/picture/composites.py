@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from common.body.body import OTHER_SIDE, Vector
 from synth.picture.backdrops import SIDE_PX as BACKDROP_PX
 from synth.picture.backdrops import Backdrop
-from synth.picture.furniture import Place
 from synth.picture.obstacles import Layers, beside, coated, covered, hidden_by, obstructed
 from synth.picture.picture_examples import SIDE_PX, PictureExample
+from synth.things.shade import Place
 
 Floats = NDArray[np.float32]
 UNKNOWN: Final = 128
@@ -193,7 +193,7 @@ def _obstructed(
     """A thing before the person, another person partly so, or nothing but the cloth."""
     chance, after = rng.random(), layers
     if chance < THING_SHARE:
-        place = Place(example.joints_px, example.stature_px)
+        place = Place(example.joints_px, example.stature_px, SIDE_PX)
         after = obstructed(layers, place, _cut(backdrop(), rng), rng)
     elif chance < THING_SHARE + PASSER_SHARE:
         after = hidden_by(layers, beside(other(), rng), bool(rng.random() < 0.5))

@@ -7,8 +7,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.picture.furniture import MOVED, THINGS, Floats, Place, blank, fill, line
 from synth.picture.picture_examples import SIDE_PX, PictureExample
+from synth.things.furniture import MOVED, THINGS
+from synth.things.shade import Floats, Place, fill, line
 
 OUTLINED_SHARE: Final = 0.5
 """Share of what people push or carry that their silhouettes have: it moves, too."""
@@ -92,8 +93,8 @@ def beside(other: PictureExample, rng: np.random.Generator) -> Floats:
 
 def coated(example: PictureExample, rng: np.random.Generator) -> PictureExample:
     """The same person in a long coat or skirt; forearms and hands are before it."""
-    place = Place(example.joints_px, example.stature_px)
-    cloth = blank()
+    place = Place(example.joints_px, example.stature_px, SIDE_PX)
+    cloth = place.blank()
     fill(cloth, cv2.convexHull(_corners(place, rng))[:, 0], 1.0)
     for side in "lr":
         elbow, wrist = place.middle(f"{side}_elbow"), place.middle(f"{side}_wrist")

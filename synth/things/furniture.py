@@ -1,97 +1,41 @@
 """Furniture before people in pictures, and what they push or carry: drawn where they stand."""
 
-from collections.abc import Callable, Sequence
-from typing import Final, NamedTuple
+from collections.abc import Callable
+from typing import Final
 
-import cv2
 import numpy as np
-from numpy.typing import NDArray
 
-from common.body.body import JOINT_NAMES, Vector
-from synth.picture.picture_examples import SIDE_PX
-
-Floats = NDArray[np.float32]
-Shade = NDArray[np.float32]
-"""(SIDE_PX, SIDE_PX) brightness of an opaque thing, 0 where it is not."""
-AT: Final = {name: at for at, name in enumerate(JOINT_NAMES)}
-FINER_BITS: Final = 3
-"""Shapes are drawn to an eighth of a pixel."""
-
-
-class Place(NamedTuple):
-    """Where the person is, in pixels."""
-
-    joints: Floats
-    """(15, 2) JOINT_NAMES order."""
-    stature: float
-
-    def middle(self, *names: str) -> Floats:
-        """(2,) the mean of some joints."""
-        return np.asarray(self.joints[[AT[name] for name in names]].mean(axis=0), np.float32)
-
-    def floor(self) -> float:
-        """The row on which the person stands."""
-        return float(self.joints[:, 1].max()) + 0.04 * self.stature
-
-
-def blank() -> Shade:
-    """No thing yet."""
-    return np.zeros((SIDE_PX, SIDE_PX), np.float32)
-
-
-def fill(shade: Shade, corners: Floats, value: float) -> None:
-    """A polygon of (n, 2) corners, in pixels."""
-    fixed = (np.asarray(corners) * (1 << FINER_BITS)).round().astype(np.int32)
-    cv2.fillPoly(shade, [fixed], value, shift=FINER_BITS)
-
-
-def _block(shade: Shade, low: tuple[float, float], high: tuple[float, float], value: float) -> None:
-    """A rectangle between two corners."""
-    (left, top), (right, bottom) = low, high
-    fill(shade, np.array([[left, top], [right, top], [right, bottom], [left, bottom]]), value)
-
-
-def line(shade: Shade, ends: Sequence[Vector | Floats], wide: float, value: float) -> None:
-    """A line from end to end, so many pixels wide, one at least."""
-    fixed = (np.array(ends) * (1 << FINER_BITS)).round().astype(np.int32)
-    cv2.polylines(shade, [fixed], False, value, max(1, round(wide)), shift=FINER_BITS)
-
-
-def _disc(shade: Shade, middle: Floats, radii: tuple[float, float], wide: float = -1.0) -> None:
-    """An ellipse, filled or a ring."""
-    x, y = (round(float(value)) for value in middle)
-    axes = (max(1, round(radii[0])), max(1, round(radii[1])))
-    cv2.ellipse(shade, (x, y), axes, 0, 0, 360, 0.7, -1 if wide < 0 else max(1, round(wide)))
+from synth.things.shade import Place, Shade, block, disc, fill, line
 
 
 def _desk(place: Place, rng: np.random.Generator) -> Shade:
     """Open below or closed, with a screen on it or without."""
-    shade, size = blank(), place.stature
+    shade, size = place.blank(), place.stature
     x, y = place.middle("pelvis") + size * rng.normal(0.0, (0.2, 0.1))
     left, right = x - size * rng.uniform(0.2, 0.7), x + size * rng.uniform(0.2, 0.7)
     floor, thick = max(place.floor(), y + 0.2 * size), size * rng.uniform(0.02, 0.05)
     if rng.random() < 0.5:
-        _block(shade, (left, y), (right, floor), float(rng.uniform(0.5, 0.9)))
+        block(shade, (left, y), (right, floor), float(rng.uniform(0.5, 0.9)))
     for at in (left, right - thick):
-        _block(shade, (at, y), (at + thick, floor), 0.6)
-    _block(shade, (left, y), (right, y + thick), 1.0)
+        block(shade, (at, y), (at + thick, floor), 0.6)
+    block(shade, (left, y), (right, y + thick), 1.0)
     if rng.random() < 0.4:
         at, wide = rng.uniform(left, right), size * rng.uniform(0.1, 0.2)
-        _block(shade, (at - wide, y - 0.8 * wide), (at + wide, y), 0.3)
+        block(shade, (at - wide, y - 0.8 * wide), (at + wide, y), 0.3)
     return shade
 
 
 def _chair(place: Place, rng: np.random.Generator) -> Shade:
     """Its back before the person, of slats or whole, and its legs."""
-    shade, size = blank(), place.stature
+    shade, size = place.blank(), place.stature
     x, y = place.middle("pelvis") + size * rng.normal(0.0, (0.08, 0.06))
     half, high = size * rng.uniform(0.09, 0.17), size * rng.uniform(0.1, 0.3)
     seat, floor = y + size * rng.uniform(0.0, 0.1), max(place.floor(), y + 0.2 * size)
     step = 1.0 if rng.random() < 0.6 else 0.3
     for part in np.arange(0.0, 1.0, step):
         top = seat - high * (1.0 - part)
-        _block(shade, (x - half, top), (x + half, top + high * min(step, 0.7)), 0.8)
-    _block(shade, (x - half, seat), (x + half, seat + 0.03 * size), 1.0)
+        block(shade, (x - half, top), (x + half, top + high * min(step, 0.7)), 0.8)
+    block(shade, (x - half, seat), (x + half, seat + 0.03 * size), 1.0)
     for at in (-half, half, -0.6 * half, 0.6 * half):
         line(shade, [np.array([x + at, seat - high]), np.array([x + at, floor])], 0.02 * size, 0.5)
     return shade
@@ -99,18 +43,18 @@ def _chair(place: Place, rng: np.random.Generator) -> Shade:
 
 def _wheelchair(place: Place, rng: np.random.Generator) -> Shade:
     """Pushed, with a passenger or without, or sat in; from a side, or from front or back."""
-    shade, size = blank(), place.stature
+    shade, size = place.blank(), place.stature
     x, y = place.middle("pelvis") + size * rng.normal(0.0, (0.12, 0.04))
     radius, floor = size * rng.uniform(0.14, 0.2), max(place.floor(), y + 0.15 * size)
     narrow, apart = rng.uniform(0.08, 1.0) * radius, size * rng.uniform(0.1, 0.16)
     if rng.random() < 0.7:
-        _block(shade, (x - apart, floor - 2.2 * radius), (x + apart, floor - radius), 0.5)
+        block(shade, (x - apart, floor - 2.2 * radius), (x + apart, floor - radius), 0.5)
     if rng.random() < 0.4:
-        _disc(shade, np.array([x, floor - 2.2 * radius]), (0.8 * apart, 1.2 * radius))
-        _disc(shade, np.array([x, floor - 3.8 * radius]), (0.05 * size, 0.065 * size))
+        disc(shade, np.array([x, floor - 2.2 * radius]), (0.8 * apart, 1.2 * radius))
+        disc(shade, np.array([x, floor - 3.8 * radius]), (0.05 * size, 0.065 * size))
     for at in (x - apart, x + apart):
         hub = np.array([at, floor - radius], np.float32)
-        _disc(shade, hub, (narrow, radius), rng.uniform(0.012, 0.04) * size)
+        disc(shade, hub, (narrow, radius), rng.uniform(0.012, 0.04) * size)
         for turn in np.arange(6) * np.pi / 3:
             rim = hub + np.array([narrow * np.cos(turn), radius * np.sin(turn)])
             line(shade, [hub, rim], 1.0, 0.9)
@@ -120,12 +64,12 @@ def _wheelchair(place: Place, rng: np.random.Generator) -> Shade:
 
 def _box(place: Place, rng: np.random.Generator) -> Shade:
     """Between the hands, or on the floor."""
-    shade, size = blank(), place.stature
+    shade, size = place.blank(), place.stature
     wide, high = size * rng.uniform(0.08, 0.3, 2)
     x, y = place.middle("l_wrist", "r_wrist") + size * rng.normal(0.0, 0.05, 2)
     if rng.random() < 0.5:
         x, y = x + size * rng.normal(0.0, 0.15), place.floor() - high
-    _block(shade, (x - wide, y - high), (x + wide, y + high), 0.8)
+    block(shade, (x - wide, y - high), (x + wide, y + high), 0.8)
     back, up = rng.uniform(-0.5, 0.5) * wide, rng.uniform(0.1, 0.4) * high
     top = y - high
     lid = [
@@ -140,7 +84,7 @@ def _box(place: Place, rng: np.random.Generator) -> Shade:
 
 def _umbrella(place: Place, rng: np.random.Generator) -> Shade:
     """Over the head and before it, or held to a side, with its shaft in a hand."""
-    shade, size = blank(), place.stature
+    shade, size = place.blank(), place.stature
     rim = place.middle("head_top") + size * rng.normal((0.0, 0.06), (0.15, 0.08))
     wide, high = size * rng.uniform(0.25, 0.5), size * rng.uniform(0.12, 0.3)
     turns = np.linspace(np.pi, 2 * np.pi, 17)

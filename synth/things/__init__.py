@@ -1,0 +1,1 @@
+"""Things that hide people in pictures."""
