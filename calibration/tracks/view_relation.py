@@ -5,6 +5,8 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from common.compiled import compiled
+
 Numbers = NDArray[np.float64]
 
 LINEAR: Final = 4
@@ -70,21 +72,40 @@ def _least(spread: Numbers) -> Numbers:
             at + finer * tried
             for at, tried in ((one_deg, TURNS_DEG), (other_deg, TURNS_DEG), (share, SHARES))
         )
-        weights = _weights(ours, theirs, shares)
-        flat = weights.reshape(-1, LINEAR)
-        forms = ((flat @ spread) * flat).sum(axis=1)
-        m, n, k = np.unravel_index(np.argmin(forms), weights.shape[:3])
+        m, n, k = _least_of(spread, np.radians(ours), np.radians(theirs), np.exp(shares))
         one_deg, other_deg, share = ours[n], theirs[m], shares[k]
-    least: Numbers = _weights(*(np.array([at]) for at in (one_deg, other_deg, share)))[0, 0, 0]
-    return least
+    return _weights(one_deg, other_deg, share)
 
 
-def _weights(one_deg: Numbers, other_deg: Numbers, share: Numbers) -> Numbers:
-    """(m, n, k, 4) of n directions from down in view 1, m in view 2, and k of view 1's weights."""
-    one, other, ours = np.radians(one_deg), np.radians(other_deg)[:, None], np.exp(share / 2.0)
-    weights = np.empty((len(other_deg), len(one_deg), len(share), LINEAR))
-    weights[..., 0], weights[..., 1] = (ours * turned(one)[:, None] for turned in (np.sin, np.cos))
-    weights[..., 2], weights[..., 3] = (
-        -1.0 / ours * turned(other)[..., None] for turned in (np.sin, np.cos)
+@compiled
+def _least_of(
+    spread: Numbers, one: Numbers, other: Numbers, shares: Numbers
+) -> tuple[int, int, int]:
+    """Which of m directions in view 2, n in view 1 and k shares give the least of the quadratic
+    form (4, 4) at their `_weights`: a share weighs what is of one view alone, not what is mixed."""
+    least, best = np.inf, (0, 0, 0)
+    for m in range(len(other)):
+        there = np.array([-np.sin(other[m]), -np.cos(other[m])])
+        for n in range(len(one)):
+            here = np.array([np.sin(one[n]), np.cos(one[n])])
+            ours, theirs, mixed = 0.0, 0.0, 0.0
+            for i in range(2):
+                for j in range(2):
+                    ours += here[i] * spread[i, j] * here[j]
+                    theirs += there[i] * spread[i + 2, j + 2] * there[j]
+                    mixed += here[i] * (spread[i, j + 2] + spread[j + 2, i]) * there[j]
+            for k in range(len(shares)):
+                form = ours * shares[k] + theirs / shares[k] + mixed
+                if form < least:
+                    least, best = form, (m, n, k)
+    return best
+
+
+def _weights(one_deg: float, other_deg: float, share: float) -> Numbers:
+    """(4,) weights of a direction from down in either view, and a share."""
+    one, other = np.radians([one_deg, other_deg])
+    ours = np.exp(share / 2.0)
+    theirs = -1.0 / ours
+    return np.array(
+        [ours * np.sin(one), ours * np.cos(one), theirs * np.sin(other), theirs * np.cos(other)]
     )
-    return weights
