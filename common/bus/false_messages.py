@@ -1,6 +1,7 @@
 """Refusal of messages that no process would send: lengths, ranges, finite numbers."""
 
 from collections.abc import Iterator
+from itertools import chain
 from typing import Any, Final
 
 import msgspec
@@ -201,11 +202,10 @@ def _sum_of(value: object) -> float:
 def _sum_of_tuple(values: tuple[Any, ...]) -> float:
     if not values:
         return 0.0
-    if isinstance(values[0], tuple):
-        return sum(map(_sum_of, values))
+    flat = chain.from_iterable(values) if isinstance(values[0], tuple) else values
     try:
-        return float(sum(map(abs, values)))
-    except TypeError:  # some entries are not numbers
+        return float(sum(map(abs, flat)))
+    except TypeError:  # some entries are not numbers, or hold more
         return sum(map(_sum_of, values))
 
 

@@ -2,15 +2,16 @@
 
 Layers that see colours at their finest, the end of the way up and the heads stay whole: in bytes
 they cost MoveNet Lightning 1.5 points of 70 on photographs, and bought no time (`docs/models.md`).
+What lies between no two layers in bytes stays whole too: rounding there costs time and accuracy.
 """
 
 import tempfile
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable
 from pathlib import Path
 from typing import Final
 
 import onnx
-from onnx import GraphProto
+from onnx import GraphProto, NodeProto
 from torch import nn
 
 from lab.landmark_lessons.landmark_file import WEIGHT, write_network
@@ -18,10 +19,11 @@ from lab.landmark_lessons.landmark_planes import windows_of
 from synth.picture.composites import Composite
 from viewer.landmarks.landmark_window import Planes
 
-FINEST: Final = ("stem.", "blocks.0.", "blocks.1.", "up.2.")
+FINEST: Final = ("stem.", "blocks.0.", "up.2.")
 HEADS: Final = ("heat.", "correction.", "nearest.", "summed.", "told.", "mask.")
 WHOLE: Final = FINEST + HEADS
 """Parts of `MovenetLandmarks` whose layers stay whole."""
+LAYERS: Final = frozenset({"Conv", "Gemm"})
 
 
 class _Windows:
@@ -67,7 +69,7 @@ def write_in_bytes(
     with tempfile.TemporaryDirectory() as folder:
         prepared = Path(folder) / "prepared.onnx"
         quant_pre_process(source, prepared, skip_symbolic_shape=True)
-        left = list(_kept_whole(onnx.load(prepared).graph, tuple(whole)))
+        left = _kept_whole(onnx.load(prepared).graph, tuple(whole))
         quantize_static(
             prepared,
             out,
@@ -80,10 +82,31 @@ def write_in_bytes(
         )
 
 
-def _kept_whole(graph: GraphProto, whole: tuple[str, ...]) -> Iterator[str]:
-    """The names of nodes that have weights of such parts."""
+def _kept_whole(graph: GraphProto, whole: tuple[str, ...]) -> list[str]:
+    """The names of nodes that stay whole: layers of such parts, and what lies between no two
+    others."""
+    in_bytes = {
+        node.name for node in graph.node if node.op_type in LAYERS and not _is_layer_of(node, whole)
+    }
+    behind: set[str] = set()
+    ahead: set[str] = set()
     for node in graph.node:
-        weights = [name for name in node.input if name.endswith(WEIGHT)]
-        parts = [name.removeprefix("network.").removeprefix("photographed.") for name in weights]
-        if any(part.startswith(whole) for part in parts):
-            yield node.name
+        if node.name in in_bytes or behind.intersection(node.input):
+            behind.update(node.output)
+    for node in reversed(graph.node):
+        if node.name in in_bytes or ahead.intersection(node.output):
+            ahead.update(node.input)
+    return [
+        node.name
+        for node in graph.node
+        if node.name not in in_bytes
+        and (
+            node.op_type in LAYERS or behind.isdisjoint(node.input) or ahead.isdisjoint(node.output)
+        )
+    ]
+
+
+def _is_layer_of(node: NodeProto, parts: tuple[str, ...]) -> bool:
+    weights = [name for name in node.input if name.endswith(WEIGHT)]
+    own = [name.removeprefix("network.").removeprefix("photographed.") for name in weights]
+    return any(name.startswith(parts) for name in own)
