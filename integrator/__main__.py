@@ -25,6 +25,7 @@ from integrator.integrator_warmup import warm_up
 from integrator.live_rig.live_calibration import LiveCalibration, is_by_person
 from integrator.measuring import opening_posture
 from integrator.merge_state import Start, State
+from integrator.rig.same_person import of_person
 from integrator.single.sight import Annotations
 
 LAST_WORDS_S: Final = 1.0
@@ -63,7 +64,7 @@ def run(
             subscriber.late_s = calibration.late_s
             for instant in subscriber.instants():
                 at = _merged(at, instant, bus, pace)
-                calibration.heard(instant)
+                calibration.heard(of_person(instant, at.state.same.chosen))
             at = at._replace(state=calibration.changed(at.state))
             told.rig(at.state, calibration.late_s)
             news = (*calibration.news, *subscriber.news)

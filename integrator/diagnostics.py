@@ -79,9 +79,22 @@ def doubt(merged: merge_state.State) -> str:
     )
 
 
+def different_people(merged: merge_state.State) -> list[str]:
+    """The report that views followed different people; empty while they did not."""
+    same = merged.same
+    views = [(view, frames) for view, frames in enumerate(same.left_out, 1) if frames]
+    if not views or same.since_s is None:
+        return []
+    told = " and ".join(f"view {view} was left out in {frames} frames" for view, frames in views)
+    return [
+        f"the views followed different people, first at {same.since_s:.1f} s: their sight lines do "
+        f"not meet, nor do they move alike; {told}"
+    ]
+
+
 def warnings(state: State, merged: merge_state.State) -> list[str]:
     """All oddities, once the performance is over."""
-    lines = assumed(merged)
+    lines = [*assumed(merged), *different_people(merged)]
     if any(state.seen) and not isinstance(merged.person.body, Measured):
         lines.append(
             "nobody took the opening posture, upright with stretched arms, facing camera 1 and "

@@ -13,6 +13,7 @@ from common.rig.upright import Uprights
 from integrator.frame_numbers import FrameTimes
 from integrator.measuring.known_body import Opening, Unknown
 from integrator.person import Person, Waiting
+from integrator.rig import same_person
 from integrator.rig.best_pair import Places
 
 
@@ -42,6 +43,8 @@ class State(NamedTuple):
     """The last number of an instant."""
     times: FrameTimes | None = None
     """When camera 1 takes its frames; None where it is no part of the run."""
+    same: same_person.State = same_person.State()
+    """Which of each view's people the person is."""
     pair: Places | None = None
     """The two views that showed the person best; None until a person was seen."""
     agreement: rig_agreement.State = rig_agreement.State()

@@ -258,7 +258,7 @@ def test_joints_that_one_side_alone_shows_keep_their_gaps() -> None:
     """Exchanged, a sure left meets an unsure right: fewer gaps are no better ones."""
     sure = tuple(0.3 if name.startswith("r_") else 0.9 for name in JOINT_NAMES)
     one, other = (msgspec.structs.replace(shown(n), confidence=sure) for n in (1, 2))
-    gaps_m = rig_agreement._joint_gaps_m(RIG.cameras, one, other)
+    gaps_m = rig_agreement.joint_gaps_m(RIG.cameras, one, other, rig_agreement.SURE_JOINT)
     left = [name.startswith("l_") for name in JOINT_NAMES]
     assert np.isfinite(gaps_m[left]).all()
     assert np.isnan(gaps_m[[name.startswith("r_") for name in JOINT_NAMES]]).all()
@@ -362,7 +362,7 @@ def test_joints_gaps_are_those_of_the_sides_that_meet_better() -> None:
     assert other is not None
     assert swapped is not None
     for second in (other, swapped):
-        gaps_m = rig_agreement._joint_gaps_m(RIG.cameras, one, second)
+        gaps_m = rig_agreement.joint_gaps_m(RIG.cameras, one, second, rig_agreement.SURE_JOINT)
         assert gaps_m == pytest.approx(np.zeros(15), abs=1e-6)
 
 
@@ -391,7 +391,9 @@ def test_a_sample_is_points_then_joints_then_the_ankle() -> None:
         RIG.cameras, rig_agreement._points(one), rig_agreement._points(other)
     )[0]
     assert sample[:6] == pytest.approx(points)
-    assert sample[6:21] == pytest.approx(rig_agreement._joint_gaps_m(RIG.cameras, one, other))
+    assert sample[6:21] == pytest.approx(
+        rig_agreement.joint_gaps_m(RIG.cameras, one, other, rig_agreement.SURE_JOINT)
+    )
     assert sample[21] == pytest.approx(rig_agreement._lower_ankle_m(RIG.cameras, one, other))
     assert len(sample) == 22
     assert np.abs(turned_deg).max() < 5.0

@@ -155,7 +155,7 @@ def _sample(rig: Rig, first: Landmarks, second: Landmarks) -> tuple[Vector, tupl
     cameras = rig.cameras
     gaps_m, places_m = _met(cameras, _points(first), _points(second))
     lower_m = _lower_ankle_m(cameras, first, second)
-    sample = np.array([*gaps_m, *_joint_gaps_m(cameras, first, second), lower_m])
+    sample = np.array([*gaps_m, *joint_gaps_m(cameras, first, second, SURE_JOINT), lower_m])
     return sample, _turned(cameras, (first, second), places_m[0])
 
 
@@ -190,13 +190,15 @@ def _points(seen: Landmarks) -> NDArray[np.float64]:
     return np.stack([joints_px[point].mean(axis=0) for point in POINTS])
 
 
-def _joint_gaps_m(cameras: tuple[Camera, ...], first: Landmarks, second: Landmarks) -> Vector:
+def joint_gaps_m(
+    cameras: tuple[Camera, ...], first: Landmarks, second: Landmarks, least: float
+) -> Vector:
     """(15,) gaps between the joints' sight lines, with a view's sides exchanged where they then
-    meet better; NaN where a view is not sure."""
+    meet better; NaN where a view's confidence is below `least`."""
     one, other = (np.array(each.joints_px) for each in (first, second))
     tried = []
     for order in (slice(None), OTHER_SIDE):
-        sure = np.minimum(first.confidence, np.array(second.confidence)[order]) >= SURE_JOINT
+        sure = np.minimum(first.confidence, np.array(second.confidence)[order]) >= least
         tried.append(np.where(sure, _met(cameras, one, other[order])[0], np.nan))
     as_is, exchanged = tried
     both = np.isfinite(as_is) & np.isfinite(exchanged)

@@ -104,6 +104,14 @@ def clock_of(sighting: Sighting) -> Clock:
     return Clock(finest.late_s, rivals_s, on_time)
 
 
+def miss_at(sighting: Sighting, late_s: float) -> float | None:
+    """Mean miss of the relation between both views' pictures at a delay of view 2; None where both
+    show too little."""
+    views = _prepared(sighting)
+    fits = fits_of(views, [late_s]) if views else []
+    return fits[0].miss if fits else None
+
+
 def _prepared(sighting: Sighting) -> tuple[JointTrack, JointTrack] | None:
     """View 1 at the moments used, and view 2, in heights about their middles."""
     sure = np.flatnonzero(sighting.first.confidence.mean(axis=1) >= LEAST_SURE)

@@ -29,7 +29,10 @@ class RigPublisher:
             self._calibration, self._doubt = state.calibration, ""
 
     def doubts(self, state: State) -> list[str]:
-        """The first report that the rig in use is not believable."""
+        """The first report that the rig in use is not believable; where the views follow different
+        people, that instead."""
+        if state.same.is_apart:
+            return diagnostics.different_people(state)
         self._doubt = self._doubt or diagnostics.doubt(state)
         return [self._doubt] if self._doubt else []
 

@@ -11,6 +11,7 @@ from integrator.live_rig.rig_job import Solved
 from integrator.measuring import opening_posture
 from integrator.merge_state import State, facing_at_start
 from integrator.person import Waiting
+from integrator.rig import same_person
 
 
 def with_rig(state: State, rig: Rig) -> State:
@@ -34,6 +35,7 @@ def with_rig(state: State, rig: Rig) -> State:
         proposes=True,
         person=Waiting(body, before.ever_confirmed),
         facing=facing_at_start(len(rig.cameras)),
+        same=same_person.State(left_out=state.same.left_out, since_s=state.same.since_s),
         agreement=rig_agreement.State(),
         stands=moved_cameras.told_by(state.stands, state.rig, rig),
     )

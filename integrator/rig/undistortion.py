@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from common.body.observation import Landmarks, Observation, Pixel, Search
 from common.bus.instant import Instant
 from common.bus.messages import View
-from common.raster.silhouette_report import box_of, is_cut, pack, unpack, with_person
+from common.raster.silhouette_report import box_of, is_cut, pack, unpack
 from common.raster.similarity import Mask
 from common.rig.camera import Camera, Rig
 
@@ -42,10 +42,11 @@ def undistorted_instant(rig: Rig | None, instant: Instant) -> Instant:
 
 
 def undistorted_view(view: View, camera: Camera) -> View:
-    """A view with its person, without distortion."""
-    if view.person is None or not any(camera.distortion):
+    """A view with its people, without distortion."""
+    if not view.people or not any(camera.distortion):
         return view
-    return with_person(view, undistorted_observation(view.person, camera))
+    people = tuple(undistorted_observation(each, camera) for each in view.people)
+    return msgspec.structs.replace(view, people=people)
 
 
 def undistorted_observation(seen: Observation, camera: Camera) -> Observation:

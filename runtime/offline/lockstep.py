@@ -189,7 +189,13 @@ def _followed(looked: Looked, job: _Job, began: float) -> _Followed:
 def _told(looked: Looked, job: _Job, followed: _Followed, clock: Clock) -> Tracked:
     """The result, with the rig and the clock as now known."""
     clip, settings, (ready, done, witness) = looked.clip, job.settings, followed
-    trust = trust_facts(clip, witness, clock, insisted=settings.trust_calibration)
+    trust = trust_facts(
+        clip,
+        witness,
+        clock,
+        insisted=settings.trust_calibration,
+        different_people=any(done.integrator.same.left_out),
+    )
     facts = _facts(ready, done, job.sources) | calibration_facts(looked) | trust
     facts |= moved_facts(done.bodies) | clock_facts(clip, looked.clock or clock, settings.offset_s)
     facts["warnings"] += [*doubts(facts), *unchecked(clip)]

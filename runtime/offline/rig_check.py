@@ -78,7 +78,9 @@ def is_late(clip: Clip, clock: Clock) -> bool:
     return clock.is_found and abs(clock.late_s) > MOST_LATE_FRAMES * period_s
 
 
-def trust_facts(clip: Clip, witness: Witness, clock: Clock, *, insisted: bool) -> Facts:
+def trust_facts(
+    clip: Clip, witness: Witness, clock: Clock, *, insisted: bool, different_people: bool = False
+) -> Facts:
     """For the summary: the rig's assessment, and the cure where it is not believable.
 
     Args:
@@ -86,6 +88,8 @@ def trust_facts(clip: Clip, witness: Witness, clock: Clock, *, insisted: bool) -
         witness: Observations of both views.
         clock: Clock of view 2, as the clip has it.
         insisted: The user trusts the calibration: no advice is given.
+        different_people: The views followed different people for a time: what contradicts the rig
+            is not evidence against it.
     """
     from calibration.gate.rig_fault import advice_on
     from calibration.gate.rig_trust import trust_of
@@ -95,7 +99,7 @@ def trust_facts(clip: Clip, witness: Witness, clock: Clock, *, insisted: bool) -
         return {}
     period_s = clip.every / clip.views[0].fps
     trust = trust_of(clip.rig, sighting, period_s, clock)
-    if trust is None:
+    if trust is None or (different_people and not trust.believed):
         return {}
     if not insisted:
         advice = advice_on(clip.rig, sighting, period_s, trust, clock, clip.views[1].late_s)

@@ -12,6 +12,7 @@ from common.method import Method
 from common.video.clip_facts import Clip, ClipView, whole_rig
 from integrator import merge, merge_state
 from integrator.live_rig.live_calibration import LiveCalibration
+from integrator.rig.same_person import of_person
 from viewer import track
 from viewer.background.background import Background
 from viewer.captured_frame import CapturedFrame
@@ -78,5 +79,5 @@ def joined(
     """
     instant = instant_of(reports, len(integrator.frames))
     state, body, guide = merge.step(integrator, instant)
-    calibration.heard(instant)
+    calibration.heard(of_person(instant, state.same.chosen))
     return calibration.changed(state), body, guide

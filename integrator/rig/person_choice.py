@@ -1,0 +1,96 @@
+"""The people in each view who are most likely one person."""
+
+from collections.abc import Sequence
+from itertools import combinations
+from typing import Final
+
+import numpy as np
+
+from calibration.gate.sight_clash import CLASHES_M, gap_m
+from common.body.body import Vector
+from common.body.observation import Observation
+from common.rig.camera import Camera, Rig, project
+
+People = tuple[Observation, ...]
+Chosen = tuple[int, ...]
+"""For each view, the index of the person among its people; -1: none of them."""
+One = tuple[int, int]
+"""A view, and the index of one of its people."""
+
+GAP_COST: Final = 4.0
+"""Cost of two people whose sight lines clash; it falls with the square of their gap."""
+UNKNOWN_COST: Final = 1.0
+"""Cost of two people of whom too few joints are sure."""
+AWAY_COST: Final = 5.0
+"""Cost of a person at their height or more from where the person is expected. Another person whom
+two views show costs more than views that clash about the expected one."""
+LATER_COST: Final = 0.25
+"""Cost of a person whom the viewer does not follow."""
+
+
+def costs_of(camera: Camera, people: People, expected_m: Vector | None) -> list[float]:
+    """The cost of each of a view's people by itself.
+
+    Args:
+        camera: Without distortion.
+        people: In its picture, without distortion.
+        expected_m: Expected place of the person, (3,) world; None: none is followed.
+    """
+    costs = [LATER_COST * (index > 0) for index in range(len(people))]
+    if expected_m is None or not people:
+        return costs
+    at_px = project(camera, expected_m[None])[0]
+    away = [_away_heights(person, at_px) for person in people]
+    return [cost + AWAY_COST * far for cost, far in zip(costs, away, strict=True)]
+
+
+def chosen(rig: Rig, people: Sequence[People], costs: Sequence[Sequence[float]]) -> Chosen:
+    """The likeliest two people of two views, then one of each other view.
+
+    Args:
+        rig: V cameras without distortion.
+        people: Of each view.
+        costs: Of each of them.
+    """
+    indices = {n: 0 for n, each in enumerate(people) if each}
+    if any(len(each) > 1 for each in people):
+        indices = _likeliest(rig, people, costs)
+    return tuple(indices.get(n, -1) for n in range(len(people)))
+
+
+def _likeliest(
+    rig: Rig, people: Sequence[People], costs: Sequence[Sequence[float]]
+) -> dict[int, int]:
+    everyone = [(n, index) for n, each in enumerate(people) for index in range(len(each))]
+    gaps = {
+        (one, other): _gap_cost(rig, people, one, other)
+        for one, other in combinations(everyone, 2)
+        if one[0] != other[0]
+    }
+    own = {one: costs[one[0]][one[1]] for one in everyone}
+    pair = min(gaps, key=lambda two: gaps[two] + own[two[0]] + own[two[1]], default=())
+    found = dict(pair)
+    for n in {one[0] for one in everyone} - set(found):
+        candidates = [one for one in everyone if one[0] == n]
+        best = min(candidates, key=lambda one: own[one] + _gaps_to(pair, one, gaps))
+        found |= dict([best])
+    return found
+
+
+def _gaps_to(pair: Sequence[One], one: One, gaps: dict[tuple[One, One], float]) -> float:
+    """The sum of the costs of a person's gaps to the others."""
+    return sum(gaps[min(one, other), max(one, other)] for other in pair)
+
+
+def _gap_cost(rig: Rig, people: Sequence[People], one: One, other: One) -> float:
+    cameras = rig.cameras[one[0]], rig.cameras[other[0]]
+    apart_m = gap_m(cameras, people[one[0]][one[1]], people[other[0]][other[1]])
+    return UNKNOWN_COST if np.isnan(apart_m) else GAP_COST * min(apart_m / CLASHES_M, 1.0) ** 2
+
+
+def _away_heights(person: Observation, at_px: Vector) -> float:
+    """Distance of the middle of a person from a place, in their heights, 1 at most."""
+    box = person.box
+    middle_px = np.array([box.left + box.right + 1, box.top + box.bottom + 1]) / 2.0
+    away = float(np.linalg.norm(middle_px - at_px)) / max(box.bottom - box.top, 1)
+    return min(away, 1.0) if np.isfinite(away) else 1.0  # NaN: it is behind the camera
