@@ -17,6 +17,7 @@ from integrator import diagnostics, merge_state
 from integrator.diagnostics import DOUBTED
 from integrator.measuring.known_body import Measured, Unknown
 from integrator.person import Waiting
+from integrator.rig import same_person
 
 RIG = paper_rig((160, 120), (200.0, 200.0), (4.5, 4.5))
 
@@ -116,3 +117,12 @@ def test_a_rig_is_doubted_that_both_views_contradict_and_the_user_does_not_insis
         assert "-12 mm over the floor" in said
         assert "33 degrees" in said
     assert diagnostics.doubt(state) == ""
+
+
+def test_views_that_followed_different_people_are_named_with_the_time_and_the_frames() -> None:
+    assert diagnostics.different_people(merged()) == []
+    same = same_person.State(left_out=(0, 12), since_s=1.33)
+    (told,) = diagnostics.warnings(diagnostics.State(), merged()._replace(same=same))
+    assert "followed different people, first at 1.3 s" in told
+    assert "view 2 was left out in 12 frames" in told
+    assert "view 1" not in told

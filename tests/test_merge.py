@@ -24,8 +24,10 @@ from staging import (
     squatting,
     standing,
 )
+from two_people import PERIOD_S, first_m, instant, other_m, seen
 
 from calibration.gate import rig_agreement
+from calibration.gate.sight_clash import Clash
 from common.body.body import ANGLE_NAMES, ANGLES_IN_POSE, JOINT_NAMES, POSE_INDEX, Vector
 from common.body.kinematics import joints
 from common.body.proportions import body_vector, stature
@@ -35,12 +37,13 @@ from common.bus.messages import Guide
 from common.config.settings import Settings
 from common.method import DEFAULT, Mode
 from common.rig.camera import project
-from integrator import merge, merge_state
+from integrator import diagnostics, merge, merge_state
 from integrator.belief import LOST_S
 from integrator.frame_numbers import NO_FRAME, FrameTimes
-from integrator.measuring.known_body import Measured, Unmeasured
+from integrator.measuring.known_body import Measured, Unknown, Unmeasured
 from integrator.person import Following, Posed, Sighting, Waiting
 from integrator.pose import smoothing
+from integrator.rig import same_person
 from integrator.rig.body_position import scales_at
 
 LOST = round(15 * LOST_S)
@@ -516,3 +519,43 @@ def test_who_comes_has_a_filter_of_their_own_and_who_stays_keeps_theirs() -> Non
         assert (comes.smooth.period_s, comes.smooth.P) == (0.2, None)
         assert len(comes.smooth.x) == 2 * len(ANGLE_NAMES)
         assert (comes.doubted, comes.ever_confirmed) == (0, believed)
+
+
+def two_views(n: int, one_m: Vector, two_m: Vector) -> Instant:
+    """People as both views show them, with silhouettes of one who stands there."""
+    shown = zip((0, 1), (one_m, two_m), silhouettes(standing()), strict=True)
+    people = [
+        msgspec.structs.replace(observation(mask), landmarks=seen(view, joints_m).landmarks)
+        for view, joints_m, mask in shown
+    ]
+    return instant(n, *((each,) for each in people))
+
+
+def test_a_view_that_turns_to_another_person_is_left_out_and_the_rig_is_not_doubted() -> None:
+    state = merge_state.init(RIG, PERIOD_S, Settings(), DEFAULT)
+    for n in range(30):
+        state, body, _ = merge.step(state, two_views(n, first_m(n), first_m(n)))
+        assert body.views == "both"
+    for n in range(30, 60):
+        state, body, _ = merge.step(state, two_views(n, first_m(n), other_m(n)))
+    assert (body.views, body.seen) == ("1", (True, False))
+    assert state.agreement.told is None
+    assert diagnostics.doubt(state) == ""
+
+
+def test_what_came_of_two_people_is_forgotten_and_a_body_that_was_seen_before_is_kept() -> None:
+    prior = Unmeasured(PERSON)
+    person = Waiting(prior, ever_confirmed=True)
+    for met, body in ((LOST - 1, Unknown()), (LOST, prior)):
+        pair = same_person.Pair((0, 1), Clash(met))
+        state = merge_state.init(RIG, PERIOD_S, Settings(), DEFAULT)._replace(
+            person=person, same=same_person.State(pairs=(pair,))
+        )
+        assert merge._without_another(state, LOST).person == Waiting(body, ever_confirmed=True)
+
+
+def test_an_assumed_rig_tells_no_people_apart() -> None:
+    state = merge_state.init(RIG, PERIOD_S, Settings(), DEFAULT)._replace(scale_source="assumed")
+    for n in range(30):
+        state, *_ = merge.step(state, two_views(n, first_m(n), other_m(n)))
+        assert state.same == same_person.State()

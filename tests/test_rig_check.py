@@ -219,6 +219,9 @@ def test_a_rig_is_judged_by_what_was_seen_and_advised_unless_it_is_insisted_on(
     assert advised[:1] + advised[2:] == (RIG, period_s, found, clock, 0.5)
     assert advised[1].first.times_s.tolist() == [0.0, 0.1]
     asked.by.clear()
+    different = trust_facts(clip, witness, clock, insisted=False, different_people=True)
+    assert different == {}
+    asked.by.clear()
     assert trust_facts(clip, witness, clock, insisted=True) == {"trust": msgspec.to_builtins(found)}
     assert len(asked.by) == 1
 

@@ -109,3 +109,18 @@ def test_cameras_are_exchanged_where_facings_agree_in_the_other_order(
     said = advice_on(PAPER, SHOWN, PERIOD_S, doubted("facing", "apart"))
     assert said.startswith("the cameras are exchanged") is exchanged
     assert asked[0].cameras == PAPER.cameras[::-1]
+
+
+@pytest.mark.parametrize(("miss", "late_s"), [(0.7, 0.0), (0.7, 0.4), (0.3, 0.0), (None, 0.0)])
+def test_different_people_are_asked_for_before_any_fault_of_the_cameras(
+    monkeypatch: pytest.MonkeyPatch, miss: float | None, late_s: float
+) -> None:
+    monkeypatch.setattr(
+        "calibration.gate.sight_clash.miss_at", lambda _, at: miss if at == late_s else 0.0
+    )
+    monkeypatch.setattr(rig_fault, "trust_of", lambda *_: doubted())
+    said = advice_on(PAPER, SHOWN, PERIOD_S, doubted("facing", "apart"), Clock(late_s))
+    assert said.startswith("the views follow different people") == (miss == 0.7)
+    assert said.startswith("the cameras are exchanged") == (miss != 0.7)
+    met = advice_on(PAPER, SHOWN, PERIOD_S, doubted("facing"), Clock(late_s))
+    assert met.startswith("the cameras are exchanged")

@@ -4,11 +4,13 @@ import pytest
 from local_bus import LocalBus
 from staging import PERIOD_S, RIG
 
+from calibration.gate.sight_clash import Clash
 from common.bus.control_messages import Cameras
 from common.config.settings import Settings
 from common.method import DEFAULT
 from integrator import diagnostics, merge_state
 from integrator.hearing.rig_publisher import RigPublisher
+from integrator.rig import same_person
 
 KNOWN = merge_state.init(RIG, PERIOD_S, Settings(), DEFAULT)
 NOBODY = merge_state.init(None, PERIOD_S, Settings(), DEFAULT)
@@ -38,6 +40,17 @@ def test_a_doubt_is_kept_as_it_was_first_said_until_there_is_another_rig(
     assert [told.doubts(KNOWN) for _ in range(3)] == [[], ["40 mm apart"], ["40 mm apart"]]
     told.rig(KNOWN._replace(calibration=1), 0.0)
     assert told.doubts(KNOWN) == ["90 mm apart"]
+
+
+def test_views_that_follow_different_people_are_told_instead_of_a_doubt_about_the_rig(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(diagnostics, "doubt", lambda _: "40 mm apart")
+    pair = same_person.Pair((0, 1), Clash(is_apart=True))
+    apart = KNOWN._replace(same=same_person.State((0, -1), (pair,), (0, 3), 0.2))
+    told = RigPublisher(LocalBus())
+    assert told.doubts(apart) == diagnostics.different_people(apart)
+    assert told.doubts(KNOWN) == ["40 mm apart"]
 
 
 def test_news_are_new_where_they_differ_from_those_before() -> None:

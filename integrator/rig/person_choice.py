@@ -61,6 +61,7 @@ def chosen(rig: Rig, people: Sequence[People], costs: Sequence[Sequence[float]])
 def _likeliest(
     rig: Rig, people: Sequence[People], costs: Sequence[Sequence[float]]
 ) -> dict[int, int]:
+    """Index of the person by view; each two people are tried, with the nearest of other views."""
     everyone = [(n, index) for n, each in enumerate(people) for index in range(len(each))]
     gaps = {
         (one, other): _gap_cost(rig, people, one, other)
@@ -68,18 +69,25 @@ def _likeliest(
         if one[0] != other[0]
     }
     own = {one: costs[one[0]][one[1]] for one in everyone}
-    pair = min(gaps, key=lambda two: gaps[two] + own[two[0]] + own[two[1]], default=())
-    found = dict(pair)
-    for n in {one[0] for one in everyone} - set(found):
-        candidates = [one for one in everyone if one[0] == n]
-        best = min(candidates, key=lambda one: own[one] + _gaps_to(pair, one, gaps))
-        found |= dict([best])
-    return found
+    tried = [_with_others(pair, gaps, own) for pair in gaps] or [(own[one], (one,)) for one in own]
+    return dict(min(tried)[1])
 
 
-def _gaps_to(pair: Sequence[One], one: One, gaps: dict[tuple[One, One], float]) -> float:
-    """The sum of the costs of a person's gaps to the others."""
-    return sum(gaps[min(one, other), max(one, other)] for other in pair)
+def _with_others(
+    pair: tuple[One, One], gaps: dict[tuple[One, One], float], own: dict[One, float]
+) -> tuple[float, tuple[One, ...]]:
+    """Two people and the nearest of each other view, after what they cost."""
+    total = gaps[pair] + sum(own[one] for one in pair)
+    found: tuple[One, ...] = pair
+    for n in sorted({one[0] for one in own} - {one[0] for one in pair}):
+        candidates = [
+            (own[one] + sum(gaps[min(one, each), max(one, each)] for each in pair), one)
+            for one in own
+            if one[0] == n
+        ]
+        cost, nearest = min(candidates)
+        total, found = total + cost, (*found, nearest)
+    return total, found
 
 
 def _gap_cost(rig: Rig, people: Sequence[People], one: One, other: One) -> float:
