@@ -4,7 +4,7 @@ from pathlib import Path
 
 import msgspec
 
-from common.config.part_settings import SettingsError
+from common.config.part_settings import SettingsError, SilhouetteSettings
 from common.config.settings import LANDMARK_SOURCES, NETWORK, Settings
 from common.method import Mode
 
@@ -15,11 +15,13 @@ def overridden(
     size: str | None,
     landmarks: str | None = None,
     offset_s: float | None = None,
+    background: str | None = None,
 ) -> Settings:
     """The settings with the command line's values; None keeps a setting.
 
     Raises:
-        SettingsError: When the size is invalid, or the source of landmarks is, or does not exist.
+        SettingsError: When the size is invalid, the source of landmarks is, or does not exist, or
+            when there is neither a background nor landmarks.
     """
     try:
         named = msgspec.structs.replace(
@@ -27,6 +29,7 @@ def overridden(
             mode=mode or settings.mode,
             size=size or settings.size,
             landmarks=settings.landmarks if landmarks is None else landmarks,
+            silhouette=_silhouette(settings, background),
             offset_s=settings.offset_s if offset_s is None else offset_s,
         )
     except ValueError as error:
@@ -34,6 +37,14 @@ def overridden(
     if landmarks is not None:
         _refuse_absent(landmarks)
     return named
+
+
+def _silhouette(settings: Settings, background: str | None) -> SilhouetteSettings:
+    if background is None:
+        return settings.silhouette
+    if background != "none":
+        raise SettingsError(f"background must be none, got {background!r}")
+    return msgspec.structs.replace(settings.silhouette, background="none")
 
 
 def _refuse_absent(landmarks: str) -> None:

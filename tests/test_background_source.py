@@ -417,3 +417,21 @@ def test_only_a_cameras_own_background_is_kept_and_read_again(
         ClipError, match=r"another shape than the run began with \(6x8 at .*, 8x6 then\)"
     ):
         opening_of_run(wide, SilhouetteSettings(), reader, tmp_path)
+
+
+def test_without_a_background_no_frame_but_the_first_is_read(
+    clip: Path, decoder: Decoder, tmp_path: Path
+) -> None:
+    """A person may stand there, and a folder of learnt backgrounds is not asked."""
+    view, without = view_of(clip, decoder), SilhouetteSettings(background="none")
+    first = film_of(clip / "cam1.avi")[0]
+    for opening in (
+        opening_of_view(view, without, decoder),
+        opening_of_run(view, without, decoder, tmp_path),
+    ):
+        assert opening.background.uncertain.all()
+        assert (opening.background.centre == first).all()
+        assert (opening.odd, opening.somebody) == ("", None)
+    of_a_video = background_of_film(view, without, decoder)
+    assert of_a_video.background.uncertain.all()
+    assert (of_a_video.patches, of_a_video.odd) == ([], "")

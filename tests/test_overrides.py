@@ -4,8 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from common.config.part_settings import SettingsError
+from common.config.part_settings import SettingsError, SilhouetteSettings
 from common.config.settings import Settings
+from common.method import Mode
 from runtime.overrides import overridden
 from tritrack.commands.clip_commands import single, track
 
@@ -32,6 +33,22 @@ def test_an_offset_that_is_named_goes_before_that_of_the_settings(
 def test_what_no_run_could_mean_is_refused() -> None:
     with pytest.raises(SettingsError, match="landmarks must be own, none, mediapipe or a folder"):
         overridden(Settings(), None, None, "")
+
+
+def test_a_run_works_without_a_background_where_landmarks_show_the_person() -> None:
+    named = overridden(Settings(), None, None, background="none")
+    assert named.silhouette == SilhouetteSettings(background="none")
+    assert overridden(named, None, None).silhouette == named.silhouette
+    with pytest.raises(SettingsError, match="background must be none, got 'room"):
+        overridden(Settings(), None, None, background="room.png")
+
+
+@pytest.mark.parametrize(("mode", "landmarks"), [("paper", "own"), ("default", "none")])
+def test_without_a_background_and_without_landmarks_no_person_can_be_seen(
+    mode: Mode, landmarks: str
+) -> None:
+    with pytest.raises(SettingsError, match="without a background only landmarks show a person"):
+        overridden(Settings(), mode, None, landmarks, background="none")
 
 
 @pytest.mark.parametrize("named", ["README.md", "nope", "nope.onnx"])

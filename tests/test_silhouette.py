@@ -17,7 +17,7 @@ from common.method import DEFAULT, PAPER
 from common.raster.similarity import Mask
 from common.video.pictures import Image
 from viewer import track
-from viewer.background.background import BackgroundModel, learn, light_gain
+from viewer.background.background import BackgroundModel, learn, light_gain, unknown
 from viewer.background.moved_objects import Patch
 from viewer.background.occluded_background import learn_uncovered
 from viewer.silhouette.alpha_matte import matte, sides_of
@@ -490,3 +490,12 @@ def test_in_the_dark_nothing_is_taken_on(gain: float, taken: bool) -> None:
     found = _adapted(state, frame, None)
     assert found.frames == 8
     assert (found.model.centre is not state.model.centre) == taken
+
+
+def test_before_no_known_background_there_is_no_silhouette_whatever_changes() -> None:
+    empty = np.rint(room()).astype(np.uint8)
+    person = cv2.rectangle(empty.copy(), (140, 60), (180, 200), (0, 0, 0), cv2.FILLED)
+    state, seen = step(init(unknown(empty), SETTINGS, DEFAULT), person, None)
+    assert (seen.box, seen.area_px, seen.mask.any()) == (None, 0, False)
+    _, seen = step(before(state, learn([empty])), person, None)
+    assert seen.box is not None, "a background that is learnt during the run counts"

@@ -12,11 +12,13 @@ import numpy as np
 import pytest
 
 import runtime.steps.tracker
+from common.body.body import JOINT_NAMES
 from common.config.part_settings import CameraSettings, SettingsError
 from common.config.settings import Settings
 from common.rig.rig_file import CalibrationError, load_rig
 from common.video.pictures import Image
 from runtime.offline.lockstep import Decoders, track_clip
+from runtime.overrides import overridden
 from synth.write import ClipSet, write_set
 from tritrack import Body, Tracker
 
@@ -106,6 +108,32 @@ def test_without_pictures_of_the_empty_room_the_first_half_second_is_that(
     status = [tracker.step(list(instant))[0].status for instant in first]
     assert set(status[:8]) == {"empty"}
     assert status.count("tracking") > 20
+
+
+@pytest.mark.slow
+def test_without_a_background_a_person_who_is_there_from_the_first_image_is_followed(
+    data_dir: Path,
+) -> None:
+    """Bit for bit as by the command, and near the true joints."""
+    folder = data_dir / "dev" / "r07_t1_07_raise_both_lateral"
+    settings = Settings(clip=str(folder), size="160x120")
+    settings = overridden(settings, None, None, background="none")
+    with Decoders() as decoders:
+        of_the_command = list(track_clip(settings, decoders).bodies)
+    films = [list(pictures(folder / f"cam{number}.avi")) for number in (1, 2)]
+    tracker = Tracker(folder.parent / "calibration.json", size="160x120", background="none")
+    got = [tracker.step(list(instant))[0] for instant in zip(*films, strict=True)]
+    assert got == of_the_command
+    with np.load(folder / "truth.npz") as truth:
+        names = truth["joint_names"].tolist()
+        true_m = truth["joints3d"][30:, [names.index(name) for name in JOINT_NAMES]]
+    off_m = np.linalg.norm(np.array([body.joints_m for body in got[30:]]) - true_m, axis=-1)
+    assert off_m.mean() < 0.05
+
+
+def test_a_background_is_images_or_none_at_all() -> None:
+    with pytest.raises(SettingsError, match=r'must be images, "none" or None, got \'room\''):
+        Tracker(background="room")  # type: ignore[arg-type]
 
 
 def test_one_camera_needs_no_calibration_and_an_image_may_be_given_alone(

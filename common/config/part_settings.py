@@ -1,7 +1,7 @@
 """The settings of each part of a run: camera, silhouette, search, body, recogniser, page, bus."""
 
 import math
-from typing import Final
+from typing import Final, Literal
 
 import msgspec
 
@@ -51,6 +51,8 @@ class CameraSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 class SilhouetteSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """How a person is distinguished from the background (P3)."""
 
+    background: Literal["learnt", "none"] = "learnt"
+    """"none": there is no model of the background; the landmark network alone shows the person."""
     empty_s: float = 0.5
     """Seconds at the start of a clip that show the empty background; if a person stands there
     already, the background is estimated from the whole clip instead."""

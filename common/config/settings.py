@@ -17,7 +17,7 @@ from common.config.part_settings import (
 )
 from common.config.picture_size import size_of
 from common.endpoint import address_of
-from common.method import Mode
+from common.method import METHODS, Mode
 
 LANDMARK_SOURCES: Final = ("own", "none", "mediapipe")
 """Values of `landmarks` that are not paths."""
@@ -90,8 +90,18 @@ class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
             raise ValueError(
                 f"landmarks must be {', '.join(LANDMARK_SOURCES)} or a folder or network"
             )
+        if self.silhouette.background == "none":
+            self._refuse_no_sight()
         within("every", self.every, 1, 1000)
         within("fps", self.fps, 0.0, 1000.0)
         within("offset_s", self.offset_s or 0.0, -MOST_OFFSET_S, MOST_OFFSET_S)
         if self.metrics:
             address_of(self.metrics)
+
+    def _refuse_no_sight(self) -> None:
+        """Without a background only landmarks show a person, which the documents' methods lack."""
+        if self.landmarks == "none" or not METHODS[self.mode].landmarks:
+            raise ValueError(
+                "without a background only landmarks show a person: have background learnt, or "
+                "mode default with landmarks"
+            )

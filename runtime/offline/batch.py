@@ -53,6 +53,8 @@ class Asked(NamedTuple):
     """Overwrite runs of other clips."""
     offset_s: float | None = None
     """Delay of camera 2."""
+    background: str | None = None
+    """"none": work without a model of the background."""
 
 
 def track_all(paths: Sequence[Path], out: Path, given: Asked, console: Console) -> Facts:
@@ -82,7 +84,8 @@ def track_all(paths: Sequence[Path], out: Path, given: Asked, console: Console) 
             try:
                 own = config_file.load(path)
                 refuse_no_source(own, path)
-                settings = overridden(own, given.mode, given.size, given.landmarks, given.offset_s)
+                named = given.mode, given.size, given.landmarks, given.offset_s, given.background
+                settings = overridden(own, *named)
                 if given.trusted:
                     settings = msgspec.structs.replace(settings, trust_calibration=True)
                 told = {"the views": given.views, "what is recorded": given.record}

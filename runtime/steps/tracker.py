@@ -7,8 +7,8 @@ from typing import Final, Literal, NamedTuple
 import msgspec
 import numpy as np
 
-from common.bus.messages import Body, Guide, Posture, ViewerNumber
-from common.config.part_settings import BodySettings, SettingsError
+from common.bus.messages import Body, Guide, Posture, ViewerNumber, place_in_rig
+from common.config.part_settings import BodySettings, SettingsError, SilhouetteSettings
 from common.config.picture_size import size_of
 from common.config.settings import Settings
 from common.method import METHODS, Mode
@@ -29,7 +29,7 @@ from runtime.steps.one_thread import one_thread
 from runtime.steps.together import joined, looked, viewer_of
 from runtime.store.pose_arrays import poses
 from viewer import track
-from viewer.background.background import learn
+from viewer.background.background import Background, learn, unknown
 from viewer.captured_frame import CapturedFrame
 
 BOUND: Final = "320x240"
@@ -104,7 +104,7 @@ class Tracker:
         size: str = BOUND,
         mode: Literal["default", "paper"] = "default",
         landmarks: Literal["own", "none"] = "own",
-        background: Images | None = None,
+        background: Images | Literal["none"] | None = None,
         rate_hz: float = RATE_HZ,
         stature_m: float = BodySettings().stature_m,
     ) -> None:
@@ -118,7 +118,8 @@ class Tracker:
             mode: As `--mode`.
             landmarks: Whether the landmark network is used.
             background: Images of the empty room, in the form of `step`'s; None: it is learnt from
-                the first half second of images, as for a live camera, without a person.
+                the first half second of images, as for a live camera, without a person; "none":
+                people are seen by the landmark network alone.
             rate_hz: Approximate rate of each camera, Hz, also where `captured_s` is given.
             stature_m: The person's stature, where no calibration gives the scale.
 
@@ -129,7 +130,8 @@ class Tracker:
             ValueError: When `background` lacks an image of a camera. Both errors above are
                 ValueErrors.
         """
-        self._settings = _settings(size, mode, landmarks, stature_m)
+        looks = SilhouetteSettings(background=_kind(background))
+        self._settings = _settings(size, mode, landmarks, stature_m, looks)
         self._rate_hz = float(rate_hz)
         if not 0.0 < self._rate_hz <= LARGEST_RATE_HZ:
             raise SettingsError(f"rate_hz must be from 0 to {LARGEST_RATE_HZ:g}, got {rate_hz}")
@@ -137,7 +139,8 @@ class Tracker:
         if mode == "paper" and len(self._cameras.numbers) > 2:
             raise SettingsError("the paper's mode is for two cameras: name them in cameras")
         numbers = self._cameras.numbers
-        self._plates = None if background is None else plates_of(background, numbers)
+        without = background is None or isinstance(background, str)
+        self._plates = None if without else plates_of(background, numbers)
         self._going: _Going | None = None
 
     @property
@@ -198,15 +201,23 @@ class Tracker:
         method = METHODS[settings.mode]
         state = merge_state.init(whole_rig(clip), period_s, settings, method, start)
         naming = recognizer.init(recognizer.model_of(settings), settings.recognizer.window_frames)
-        views, empty = clip.views, {} if self._plates is None else empty_of(self._plates, clip)
         viewers = {
-            view.number: viewer_of(view, clip, settings, method, learn(empty[view.number]))
-            for view in views
-            if empty
+            number: viewer_of(clip.views[place_in_rig(number)], clip, settings, method, known)
+            for number, known in self._backgrounds(clip, given).items()
         }
         calibration = LiveCalibration(state, looks=False, solver=SolverAtOnce())
-        learns: Learns = {} if empty else {view.number: () for view in views}
+        learns: Learns = {} if viewers else {view.number: () for view in clip.views}
         return _Going(clip, learns, viewers, state, calibration, naming)
+
+    def _backgrounds(
+        self, clip: Clip, given: Mapping[ViewerNumber, Image]
+    ) -> dict[ViewerNumber, Background]:
+        """The backgrounds that are known before any step."""
+        if self._settings.silhouette.background == "none":
+            return {v.number: unknown(picture_of(given[v.number], v)) for v in clip.views}
+        if self._plates is None:
+            return {}
+        return {number: learn(empty) for number, empty in empty_of(self._plates, clip).items()}
 
     def _stepped(
         self, going: _Going, given: Mapping[ViewerNumber, Image], now_s: float
@@ -256,13 +267,24 @@ def _refuse_what_does_not_go_on(
             )
 
 
-def _settings(size: str, mode: Mode, landmarks: str, stature_m: float) -> Settings:
+def _kind(background: Images | Literal["none"] | None) -> Literal["learnt", "none"]:
+    if not isinstance(background, str):
+        return "learnt"
+    if background != "none":
+        raise SettingsError(f'background must be images, "none" or None, got {background!r}')
+    return background
+
+
+def _settings(
+    size: str, mode: Mode, landmarks: str, stature_m: float, silhouette: SilhouetteSettings
+) -> Settings:
     if mode not in ("default", "paper"):
         raise SettingsError(f"mode must be default or paper in a loop of one's own, got {mode!r}")
     if landmarks not in ("own", "none"):
         raise SettingsError(f"landmarks must be own or none, got {landmarks!r}")
     try:
         body = BodySettings(stature_m=float(stature_m))
-        return Settings(size=str(size), mode=mode, landmarks=landmarks, body=body)
+        named = {"mode": mode, "landmarks": landmarks, "body": body, "silhouette": silhouette}
+        return Settings(size=str(size), **named)
     except ValueError as error:
         raise SettingsError(str(error)) from error

@@ -48,6 +48,10 @@ def track(
         bool, typer.Option("--trust-calibration", help="Go on with a calibration that seems wrong.")
     ] = False,
     offset: Offset = None,
+    background: Annotated[
+        Literal["none"] | None,
+        typer.Option(help="none: people are seen by the landmark network alone."),
+    ] = None,
     record: Record = False,
     resume: Resume = False,
     force: Force = False,
@@ -68,7 +72,7 @@ def track(
     from runtime.offline.batch import Asked, track_all
 
     seen = mode, size, landmarks, None if views is None else numbers_given(views), trust_calibration
-    asked = Asked(*seen, record, resume, force, offset)
+    asked = Asked(*seen, record, resume, force, offset, background)
     facts = track_all(clips, out, asked, console)
     tell(facts, json_wanted, line_of_runs(facts["clips"], out))
     refuse_unfollowed(facts["clips"])
@@ -136,7 +140,8 @@ def single(
     size: Annotated[str, typer.Option(help=WORKED_ON, callback=size_given)] = "320x240",
     landmarks: LandmarkSource = None,
     background: Annotated[
-        Path | None, typer.Option(help="A picture of the scene without anybody, if there is one.")
+        Path | None,
+        typer.Option(help="A picture of the scene without a person, or none: work without."),
     ] = None,
     resume: Resume = False,
     force: Force = False,

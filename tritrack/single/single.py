@@ -44,6 +44,7 @@ from tritrack.single.mask_file import MaskFileError, MaskSequence, is_mask_file,
 from tritrack.single.overlay_video import write_overlay
 from viewer.room.background_source import LOOKED_AT, background_of_film
 
+NO_BACKGROUND: Final = Path("none")
 PASSES: Final = ("learning the room", "cutting out", "posing", "drawing")
 """The passes over a video, one after the other."""
 UNUSABLE: Final = (
@@ -59,7 +60,7 @@ class Given(NamedTuple):
     notes: Path | None = None
     """Replaces the notes beside each."""
     background: Path | None = None
-    """A picture of the scene without a person."""
+    """A picture of the scene without a person, or NO_BACKGROUND."""
     resume: bool = False
     """Resume interrupted runs, and skip complete ones."""
     force: bool = False
@@ -167,8 +168,10 @@ def job_of(path: Path, given: Given, settings: Settings) -> Job:
         cameras = {CLIP_CAMERAS[0]: CameraSettings(source=str(path))}
         own = msgspec.structs.replace(settings, cameras=cameras)
         beside = path
-    settings = overridden(own, settings.mode, settings.size, given.landmarks)
-    if given.background is not None:
+    without = "none" if given.background == NO_BACKGROUND else None
+    wanted = settings.mode, settings.size, given.landmarks, None, without
+    settings = overridden(own, *wanted)
+    if given.background is not None and without is None:
         name = first_camera(settings)
         camera = settings.cameras.get(name, CameraSettings())
         camera = msgspec.structs.replace(camera, background=str(given.background))

@@ -102,6 +102,13 @@ def estimated(centre: Floats, spread: Floats, uncertain: NDArray[np.bool_]) -> B
     return Background(centre, spread, uncertain, centre, centre, np.full_like(centre, SENSOR_NOISE))
 
 
+def unknown(picture: Image) -> Background:
+    """No background: any pixel of a first picture (H, W, 3) may show the person."""
+    centre = picture.astype(np.float32)
+    spread = np.full((*picture.shape[:2], 2), FLOOR, np.float32)
+    return estimated(centre, spread, np.ones(picture.shape[:2], np.bool_))
+
+
 def _range(frames: Sequence[Image]) -> tuple[Floats, Floats, Floats]:
     """Least and greatest grey levels of every pixel, and its largest steps, (H, W, 3) each."""
     stack = np.stack(frames).astype(np.float32)

@@ -22,6 +22,7 @@ from viewer.background.background import (
     learnt,
     lit,
     overlaid_opening,
+    unknown,
 )
 from viewer.background.empty_opening import is_empty_opening, is_still
 from viewer.background.hidden_background import learn_behind
@@ -79,6 +80,9 @@ def opening_of_view(view: ClipView, settings: SilhouetteSettings, decoder: Reade
         Undecodable: When the plate or the file has no picture.
         DecoderDied: When the decoder broke on it.
     """
+    if settings.background == "none":
+        (first,) = islice(_pictures(decoder, view.source, view), 1)
+        return Opening(unknown(first), "", None)
     if isinstance(view.source, int) and not view.background:
         return Opening(learn(_now(view, settings, decoder)), "", None)
     if view.background:
@@ -152,7 +156,7 @@ def opening_of_run(
     Raises:
         ClipError: When the camera's pictures are not of the size that they were.
     """
-    if kept is None or not isinstance(view.source, int):
+    if kept is None or not isinstance(view.source, int) or settings.background == "none":
         return opening_of_view(view, settings, decoder)
     path = kept / _name_of(view)
     if path.exists():
@@ -208,7 +212,7 @@ def background_of_film(
         decoder: Reads the file; left at its start.
     """
     background, odd, _ = opening_of_view(view, settings, decoder)
-    if isinstance(view.source, int):
+    if isinstance(view.source, int) or settings.background == "none":
         return VideoBackground(background, [], odd)
     sample = list(_looked_at(view, settings, decoder)[1])
     if not (odd or view.background):

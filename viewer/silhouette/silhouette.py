@@ -59,6 +59,8 @@ class State(NamedTuple):
     colours: Floats
     """(2, SHADES) counts of the colours of background and body, see `colour_model`."""
     frames: int
+    is_known: bool = True
+    """False: there is no background, and so no silhouette by what differs from it."""
     doubted: Bytes | None = None
     """(H, W) for how many frames each pixel has been a thing's, by the landmarks; None: none."""
 
@@ -84,7 +86,8 @@ def init(background: Background, settings: SilhouetteSettings, method: Method) -
     weight, colours = np.float32(1) / background.spread**2, fresh()
     even = np.ones(3, np.float32)
     model = BackgroundModel(background.centre, weight, even, body_colours_of(colours))
-    return State(settings, method, background, model, colours, 0)
+    is_known = not background.uncertain.all()
+    return State(settings, method, background, model, colours, 0, is_known)
 
 
 def step(state: State, frame: Image, near_px: tuple[float, float] | None) -> tuple[State, Seen]:
@@ -103,6 +106,8 @@ def step(state: State, frame: Image, near_px: tuple[float, float] | None) -> tup
     size = state.model.centre.shape
     if frame.shape != size:
         raise ValueError(f"a frame of {frame.shape}, the background has {size}")
+    if not state.is_known:
+        return state, seen_of(np.zeros(size[:2], np.uint8), 0, 1.0)
     least_share, method = state.settings.min_height_share, state.method
     state = in_light_of(state, frame)
     if not method.pixel_evidence:
