@@ -284,7 +284,7 @@ def _settings(
         raise SettingsError(f"landmarks must be own or none, got {landmarks!r}")
     try:
         body = BodySettings(stature_m=float(stature_m))
-        named = {"mode": mode, "landmarks": landmarks, "body": body, "silhouette": silhouette}
-        return Settings(size=str(size), **named)
+        named = Settings(size=str(size), mode=mode, landmarks=landmarks, body=body)
+        return msgspec.structs.replace(named, silhouette=silhouette)
     except ValueError as error:
         raise SettingsError(str(error)) from error
