@@ -139,8 +139,9 @@ class Tracker:
         if mode == "paper" and len(self._cameras.numbers) > 2:
             raise SettingsError("the paper's mode is for two cameras: name them in cameras")
         numbers = self._cameras.numbers
-        without = background is None or isinstance(background, str)
-        self._plates = None if without else plates_of(background, numbers)
+        self._plates = None
+        if background is not None and not isinstance(background, str):
+            self._plates = plates_of(background, numbers)
         self._going: _Going | None = None
 
     @property
