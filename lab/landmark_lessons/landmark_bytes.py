@@ -6,11 +6,13 @@ What lies between no two layers in bytes stays whole too: rounding there costs t
 """
 
 import tempfile
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Mapping
 from pathlib import Path
 from typing import Final
 
+import numpy as np
 import onnx
+from numpy.typing import NDArray
 from onnx import GraphProto, NodeProto
 from torch import nn
 
@@ -25,17 +27,19 @@ WHOLE: Final = FINEST + HEADS
 """Parts of `MovenetLandmarks` whose layers stay whole."""
 LAYERS: Final = frozenset({"Conv", "Gemm"})
 
+Inputs = Mapping[str, NDArray[np.generic]]
+"""What a network takes at once, by name."""
 
-class _Windows:
-    """Windows as the network takes them, one after another: a CalibrationDataReader."""
 
-    def __init__(self, windows: Iterable[Planes]) -> None:
-        self.rest = iter(windows)
+class _Inputs:
+    """Inputs of a network, one after another: a CalibrationDataReader."""
 
-    def get_next(self) -> dict[str, Planes] | None:
+    def __init__(self, inputs: Iterable[Inputs]) -> None:
+        self.rest = iter(inputs)
+
+    def get_next(self) -> Inputs | None:
         """The next, or None after the last."""
-        planes = next(self.rest, None)
-        return None if planes is None else {"planes": planes}
+        return next(self.rest, None)
 
 
 def write_both(network: nn.Module, shown: list[Composite], folder: Path, out: Path) -> None:
@@ -63,6 +67,18 @@ def write_in_bytes(
         out: The file to write.
         whole: Names of parts that stay as they are.
     """
+    as_bytes(source, ({"planes": each} for each in windows), out, whole)
+
+
+def as_bytes(source: Path, inputs: Iterable[Inputs], out: Path, whole: Collection[str]) -> None:
+    """Write a network in bytes.
+
+    Args:
+        source: A file of ONNX.
+        inputs: Any that are like those to come; the ranges of activations are theirs.
+        out: The file to write.
+        whole: Names of parts that stay as they are.
+    """
     from onnxruntime.quantization import QuantFormat, QuantType, quantize_static
     from onnxruntime.quantization.shape_inference import quant_pre_process
 
@@ -73,7 +89,7 @@ def write_in_bytes(
         quantize_static(
             prepared,
             out,
-            _Windows(windows),
+            _Inputs(inputs),
             quant_format=QuantFormat.QDQ,
             per_channel=True,
             activation_type=QuantType.QUInt8,

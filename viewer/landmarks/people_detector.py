@@ -1,0 +1,97 @@
+"""People in a whole picture: a network that shows all of them at once, coarsely."""
+
+from pathlib import Path
+from typing import Final, NamedTuple
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from common.body.body import TILTED_DEG, Floats, lean_deg
+from common.video.pictures import Image
+from viewer.landmarks.keypoint_layouts import POINT
+from viewer.landmarks.landmark_looks import opened
+from viewer.landmarks.landmark_window import Window, window_about
+
+NETWORK: Final = Path(__file__).with_name("people.onnx")
+LONG_PX, MULTIPLE = 256, 32
+"""Longer side of what the network sees, and the unit of both its sides, pixels."""
+LEAST: Final = 0.3
+"""Score from which a peak is a person: 0.2 false ones a picture of synthetic people, which the
+network of landmarks then refuses (docs/measurements.md)."""
+OVERLAP: Final = 0.5
+"""Intersection over union of two boxes from which they are of one person."""
+MOST: Final = 6
+"""Upper bound of the number of people in a picture."""
+MARGIN: Final = 0.06
+"""How far a body reaches beyond its joints, in sides of what holds them."""
+_SHOULDERS: Final = [POINT["l_shoulder"], POINT["r_shoulder"]]
+_HIPS: Final = [POINT["l_hip"], POINT["r_hip"]]
+_AROUND: Final = np.ones((3, 3), np.uint8)
+
+
+class Detection(NamedTuple):
+    """A person in a picture."""
+
+    score: float
+    """In [0, 1]."""
+    corners_px: Floats
+    """(2, 2) top left and bottom right of the body's box."""
+    joints_px: Floats
+    """(17, 2) BODY_POINTS order, coarse."""
+
+    @property
+    def window(self) -> Window:
+        """Where the network of landmarks looks at this person, turned with a leaning trunk."""
+        hips, shoulders = (self.joints_px[part].mean(axis=0) for part in (_HIPS, _SHOULDERS))
+        turn_deg = lean_deg(*(shoulders - hips).tolist())
+        if abs(turn_deg) <= TILTED_DEG:
+            return window_about(self.corners_px)
+        return window_about(self.joints_px, turn_deg, MARGIN)
+
+
+def people_in(picture: Image) -> list[Detection]:
+    """The people in a picture (H, W, 3), surest first; the coarsest are an eighth of its height."""
+    shown, scale = _shown(picture)
+    centre, size, offset, joints = (
+        each[0] for each in opened(NETWORK).run(None, {"picture": shown})
+    )
+    heat = centre[0]
+    logit = float(np.log(LEAST / (1.0 - LEAST)))
+    rows, columns = np.nonzero((heat >= cv2.dilate(heat, _AROUND)) & (heat >= logit))
+    order = np.argsort(-heat[rows, columns], kind="stable")
+    cell_px = shown.shape[2] / heat.shape[1] * scale
+    kept: list[Detection] = []
+    for row, column in zip(rows[order].tolist(), columns[order].tolist(), strict=True):
+        at = row, column
+        middle = np.array((column, row)) + offset[::-1, *at]
+        half = np.maximum(size[::-1, *at], 0.0) / 2
+        points = joints[:, *at].reshape(-1, 2)[:, ::-1] + (column, row)
+        corners = np.stack((middle - half, middle + half)) * cell_px
+        score = 1.0 / (1.0 + np.exp(-float(heat[at])))
+        if len(kept) < MOST and all(overlap(corners, known.corners_px) < OVERLAP for known in kept):
+            kept.append(Detection(score, corners, points * cell_px))
+    return kept
+
+
+def overlap(first: Floats, second: Floats) -> float:
+    """Intersection over union of two boxes by their corners, (2, 2) each; 0 of empty ones."""
+    shared = np.minimum(first[1], second[1]) - np.maximum(first[0], second[0])
+    common = float(np.prod(np.maximum(shared, 0.0)))
+    union = float(np.prod(first[1] - first[0]) + np.prod(second[1] - second[0])) - common
+    return common / union if union > 0.0 else 0.0
+
+
+def _shown(picture: Image) -> tuple[NDArray[np.uint8], float]:
+    """What the network sees, (1, h, w, 3), black beyond the picture, and the picture's pixels in
+    one of its."""
+    high, wide = picture.shape[:2]
+    scale = max(high, wide) / LONG_PX
+    size = round(wide / scale), round(high / scale)
+    shrunk = cv2.resize(
+        picture, size, interpolation=cv2.INTER_AREA if scale > 1.0 else cv2.INTER_LINEAR
+    )
+    sides = (-(-side // MULTIPLE) * MULTIPLE for side in size[::-1])
+    shown = np.zeros((1, *sides, 3), np.uint8)
+    shown[0, : size[1], : size[0]] = shrunk
+    return shown, scale
