@@ -7,7 +7,7 @@ from test_own_landmarks import acted
 
 from common.body.body import JOINT_NAMES
 from common.body.observation import Landmarks
-from viewer.landmarks.body_region import BONES, body_region, bone_region, stature_px
+from viewer.room.body_region import BONES, body_region, bone_region, stature_px
 
 
 def true_landmarks() -> Landmarks:

@@ -16,8 +16,8 @@ from synth.person.people import person
 from synth.picture.render import render
 from viewer.background.background import Background, learn
 from viewer.background.occluded_background import learn_around
-from viewer.landmarks.body_region import body_region
 from viewer.room import judged_background
+from viewer.room.body_region import body_region
 from viewer.room.judged_background import BESIDE, FAR, Judged, _first, _worth, best_of, fit
 from viewer.room.room_people import AROUND, Look, looked_at
 from viewer.silhouette import silhouette

@@ -1,70 +1,240 @@
-"""When the landmark network searches the whole picture, and what a frame hands to the next."""
+"""Where the landmark network looks, when the whole picture is searched, and at whom."""
 
+from collections.abc import Callable
 from typing import Any
 
 import msgspec
 import numpy as np
 import pytest
+from test_own_landmarks import acted, nobody, seen
 
+from common.body.body import JOINT_NAMES
 from common.body.observation import Landmarks
 from common.config.settings import Settings
+from common.video.pictures import Image
 from viewer import landmark_step
 from viewer.captured_frame import CapturedFrame
 from viewer.landmark_step import State, step
-from viewer.landmarks.own_landmarks import LandmarkResult
+from viewer.landmarks.landmark_window import Window
+from viewer.landmarks.person_mask import LandmarkResult, Shown
+from viewer.people.known_people import of_one
+from viewer.people.people_detector import Detection
 from viewer.silhouette.silhouette import Seen
 
-EMPTY = Seen(np.zeros((12, 16), np.bool_), None, 0, 0, cut=False)
-PERSON = Landmarks(((1.0, 2.0),) * 15, (0.9,) * 15)
+EMPTY = Seen(np.zeros((240, 320), np.bool_), None, 0, 0, cut=False)
+SETTINGS = Settings()
 
 
-def frame(captured_s: float, hurried: bool = False) -> CapturedFrame:
-    picture = np.zeros((12, 16, 3), np.uint8)
-    return CapturedFrame(0, captured_s, captured_s, picture, hurried=hurried)
+def standing(x_px: float, sure: float = 0.9) -> Landmarks:
+    """A person 120 pixels tall, whose middle is at a column."""
+    low, high = np.array((x_px - 20.0, 60.0)), np.array((x_px + 20.0, 180.0))
+    places = np.random.default_rng(3).uniform(low, high, (15, 2))
+    return Landmarks(tuple(map(tuple, places.tolist())), (sure,) * 15)
 
 
-@pytest.fixture
-def searches(monkeypatch: pytest.MonkeyPatch) -> list[bool]:
-    """Of each call of the network, whether it searched the whole picture."""
-    called: list[bool] = []
-
-    def own(*_: Any, searches: bool) -> LandmarkResult:
-        called.append(searches)
-        return LandmarkResult(PERSON)
-
-    monkeypatch.setattr(landmark_step, "own_landmarks", own)
-    return called
+def detected(x_px: float) -> Detection:
+    corners = np.array([(x_px - 25.0, 50.0), (x_px + 25.0, 190.0)])
+    points = np.random.default_rng(4).uniform(corners[0], corners[1], (17, 2))
+    points[[5, 6], 1], points[[11, 12], 1] = 70.0, 120.0
+    points[[5, 6, 11, 12], 0] = x_px
+    return Detection(0.8, corners, points)
 
 
-def test_the_whole_picture_is_searched_at_once_and_then_twice_a_second(
-    searches: list[bool],
+def frame(captured_s: float, hurried: bool = False, picture: Image | None = None) -> CapturedFrame:
+    shown = np.zeros((240, 320, 3), np.uint8) if picture is None else picture
+    return CapturedFrame(0, captured_s, captured_s, shown, hurried=hurried)
+
+
+class Scene:
+    """People at columns of the picture, seen by stand-ins of both networks."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, *people: Landmarks) -> None:
+        self.people = list(people)
+        self.own: Callable[..., Landmarks | None] = lambda: self.people[0] if self.people else None
+        self.searches: list[float] = []
+        self.at_s = 0.0
+        monkeypatch.setattr(landmark_step, "own_landmarks", self._own)
+        monkeypatch.setattr(landmark_step, "look_in", self._look_in)
+        monkeypatch.setattr(landmark_step, "people_in", self._people_in)
+
+    def _own(self, *_: Any, **__: Any) -> LandmarkResult:
+        return LandmarkResult(self.own())
+
+    def _look_in(self, _: Image, window: Window, __: Any) -> LandmarkResult:
+        middle = window.left + window.side / 2
+        near = [each for each in self.people if abs(column(each) - middle) < window.side / 2]
+        best = min(near, key=lambda each: abs(column(each) - middle), default=None)
+        return LandmarkResult(best)
+
+    def _people_in(self, _: Image) -> list[Detection]:
+        self.searches.append(self.at_s)
+        return [detected(column(each)) for each in self.people]
+
+    def step(self, state: State, at_s: float, **more: Any) -> tuple[State, Shown]:
+        self.at_s = at_s
+        return step(state, frame(at_s), EMPTY, SETTINGS, alone=False, **more)
+
+
+def column(landmarks: Landmarks) -> float:
+    return float(np.mean(landmarks.joints_px, axis=0)[0])
+
+
+def columns(shown: Shown) -> list[float | None]:
+    """Of the followed person, then of the others."""
+    results = (shown.followed, *(each for _, each in shown.others))
+    return [None if each.landmarks is None else column(each.landmarks) for each in results]
+
+
+@pytest.mark.parametrize(("sure", "every"), [(0.9, 0.5), (0.4, 0.25)])
+def test_the_whole_picture_is_searched_twice_a_second_and_oftener_for_a_person_unsurely_seen(
+    monkeypatch: pytest.MonkeyPatch, sure: float, every: float
 ) -> None:
-    """At 10 frames a second every fifth."""
-    state = State()
-    for at in range(12):
-        state, result = step(state, frame(at / 10 + 3.0), EMPTY, Settings(), alone=False)
-        assert state.known is result.landmarks is PERSON
-    assert searches == [at in (0, 5, 10) for at in range(12)]
+    """At 8 frames a second."""
+    scene, state = Scene(monkeypatch, standing(100.0, sure)), State()
+    for at in range(17):
+        state, shown = scene.step(state, at / 8)
+        assert shown.followed.landmarks is scene.people[0]
+    assert scene.searches == pytest.approx(np.arange(0.0, 2.01, every))
+
+
+def test_without_a_person_the_whole_picture_is_searched_four_times_a_second(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    scene, state = Scene(monkeypatch), State()
+    for at in range(9):
+        state, shown = scene.step(state, at / 8)
+        assert columns(shown) == [None]
+    assert scene.searches == pytest.approx([0.0, 0.25, 0.5, 0.75, 1.0])
+
+
+def test_two_people_are_seen_and_keep_their_numbers(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene, state = Scene(monkeypatch, standing(60.0), standing(250.0)), State()
+    for at in range(20):
+        scene.people = [standing(60.0 + 2 * at), standing(250.0 - 2 * at)]
+        state, shown = scene.step(state, at / 15)
+        assert (shown.number, [number for number, _ in shown.others]) == (0, [1])
+        first, second = columns(shown)
+        assert first == pytest.approx(column(standing(60.0 + 2 * at)), abs=1)
+        assert second == pytest.approx(column(standing(250.0 - 2 * at)), abs=1)
+
+
+def test_while_the_followed_person_is_out_of_sight_no_other_takes_the_place(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """After a second another is followed, with a number of their own."""
+    scene, state = Scene(monkeypatch, standing(60.0), standing(250.0)), State()
+    state, _ = scene.step(state, 0.0)
+    scene.people = [standing(250.0)]  # the silhouette is that of who is left
+    for at in (0.3, 0.6, 0.9):
+        state, shown = scene.step(state, at)
+        assert (columns(shown)[0], shown.number, len(shown.others)) == (None, 0, 1)
+    state, shown = scene.step(state, 1.2)
+    assert (shown.number, shown.others) == (1, ())
+    assert shown.followed.landmarks is scene.people[0]
+
+
+def test_the_integrators_person_is_followed(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene, state = Scene(monkeypatch, standing(60.0), standing(250.0)), State()
+    state, _ = scene.step(state, 0.0)
+    pelvis_px = standing(250.0).joints_px[JOINT_NAMES.index("pelvis")]
+    scene.own = lambda: standing(250.0)
+    scene.people.reverse()
+    scene._look_in = lambda *_: LandmarkResult(standing(60.0))  # type: ignore[method-assign]
+    monkeypatch.setattr(landmark_step, "look_in", scene._look_in)
+    _, shown = scene.step(state, 0.1, root_px=pelvis_px)
+    assert (shown.number, [number for number, _ in shown.others]) == (1, [0])
+
+
+def test_an_unsure_person_is_looked_at_again_where_they_are_detected(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A silhouette that lacks legs, or has a shadow, leads astray; the surer look counts."""
+    scene = Scene(monkeypatch, standing(100.0, 0.8))
+    scene.own = lambda: standing(100.0, 0.45)
+    _, shown = scene.step(State(), 0.0)
+    assert shown.followed.surety == pytest.approx(0.8)
+    scene.people = [standing(100.0, 0.39)]
+    _, shown = scene.step(State(), 0.0)
+    assert shown.followed.surety == pytest.approx(0.45)
+
+
+def test_what_no_person_is_has_its_look_reported_and_is_not_remembered(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Of a silhouette: the look says how unsure it is."""
+    scene = Scene(monkeypatch)
+    scene.own = lambda: standing(100.0, 0.2)
+    state, shown = scene.step(State(), 0.0)
+    assert shown.followed.surety == pytest.approx(0.2)
+    assert state.known is None
 
 
 def test_a_late_frame_of_a_single_view_is_not_searched_and_the_next_one_is(
-    searches: list[bool],
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    state, _ = step(State(), frame(3.0, hurried=True), EMPTY, Settings(), alone=True)
-    step(state, frame(3.1), EMPTY, Settings(), alone=True)
-    assert searches == [False, True]
+    scene = Scene(monkeypatch, standing(100.0))
+    late = frame(3.0, hurried=True)
+    state, _ = step(State(), late, EMPTY, SETTINGS, alone=True)
+    assert scene.searches == []
+    step(state, frame(3.1), EMPTY, SETTINGS, alone=True)
+    assert len(scene.searches) == 1
 
 
-def test_a_late_frame_of_two_views_keeps_what_is_known(searches: list[bool]) -> None:
-    known = State(PERSON, 2.0)
+def test_a_late_frame_of_two_views_keeps_what_is_known(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = Scene(monkeypatch, standing(100.0))
+    known = State(of_one(standing(100.0), 2.0), 2.0)
     late = frame(9.0, hurried=True)
-    assert step(known, late, EMPTY, Settings(), alone=False) == (known, LandmarkResult(None))
-    assert searches == []
+    kept, shown = step(known, late, EMPTY, SETTINGS, alone=False)
+    assert (kept, shown) == (known, Shown(LandmarkResult(None)))
+    assert scene.searches == []
 
 
-def test_an_outside_source_is_asked_in_a_hurry_too(searches: list[bool]) -> None:
-    sent = msgspec.structs.replace(frame(9.0, hurried=True), landmarks=(PERSON,))
-    settings = Settings(landmarks="mediapipe")
-    state, result = step(State(), sent, EMPTY, settings, alone=False)
-    assert (state.known, result.person) == (result.landmarks, None)
-    assert searches == []
+def test_an_outside_source_is_asked_for_one_person_in_a_hurry_too(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    scene, person = Scene(monkeypatch), standing(100.0)
+    sent = msgspec.structs.replace(frame(9.0, hurried=True), landmarks=(person,))
+    state, shown = step(State(), sent, EMPTY, Settings(landmarks="mediapipe"), alone=False)
+    assert state.known is shown.followed.landmarks
+    assert (shown.followed.person, shown.others, scene.searches) == (None, (), [])
+
+
+def found(silhouette: Seen) -> LandmarkResult:
+    """What both networks, as shipped, make of a moment of a performance at first sight."""
+    picture = acted()[0].frames[0]
+    return step(State(), frame(0.0, picture=picture), silhouette, SETTINGS, alone=False)[1].followed
+
+
+def off(result: LandmarkResult) -> Any:
+    """(15,) distance of the joints, in statures."""
+    assert result.landmarks is not None
+    _, joints_px, stature_px, _ = acted()
+    return np.linalg.norm(np.array(result.landmarks.joints_px) - joints_px, axis=1) / stature_px
+
+
+def test_a_person_without_a_silhouette_is_found_in_the_whole_picture() -> None:
+    assert np.median(off(found(nobody()))) < 0.05
+
+
+def test_a_silhouette_that_is_elsewhere_does_not_lead_astray() -> None:
+    wrong = np.zeros((240, 320), np.bool_)
+    wrong[60:200, 5:50] = True
+    assert np.median(off(found(seen(wrong)))) < 0.05
+
+
+def test_a_person_whose_legs_did_not_move_is_found_whole() -> None:
+    mask = acted()[0].masks[0].copy()
+    rows = np.flatnonzero(mask.any(axis=1))
+    mask[(rows[0] + rows[-1]) // 2 :] = False
+    result = found(seen(mask))
+    ankles = [JOINT_NAMES.index(name) for name in ("l_ankle", "r_ankle")]
+    assert off(result)[ankles].max() < 0.05
+    assert result.person is not None
+    shown, true = result.person.over((240, 320), 0.5)[0] > 0, acted()[0].masks[0]
+    assert (shown & true).sum() > 0.75 * (shown | true).sum()
+
+
+def test_in_an_empty_room_no_person_is_seen() -> None:
+    empty = frame(0.0, picture=acted()[3])
+    state, shown = step(State(), empty, nobody(), SETTINGS, alone=False)
+    assert (shown, state.known) == (Shown(LandmarkResult(None)), None)

@@ -30,13 +30,14 @@ from viewer.landmarks.landmark_window import (
 )
 from viewer.landmarks.own_landmarks import (
     LandmarkModel,
-    PersonMask,
     _about,
     _turn_deg,
     found_anywhere,
     found_between,
+    look_in,
     own_landmarks,
 )
+from viewer.landmarks.person_mask import PersonMask
 from viewer.silhouette.silhouette import Seen
 
 RIG = default_rig(320, 240)
@@ -91,33 +92,12 @@ def test_the_joints_of_somebody_with_an_outline_are_found() -> None:
     assert off(landmarks_by(shot.frames[0], seen(shot.masks[0]), None)) < 0.03
 
 
-def test_somebody_without_an_outline_is_found_in_all_of_the_picture() -> None:
-    assert off(landmarks_by(acted()[0].frames[0], nobody(), None)) < 0.05
-
-
-def test_an_outline_that_is_elsewhere_does_not_lead_astray() -> None:
-    wrong = np.zeros((240, 320), np.bool_)
-    wrong[60:200, 5:50] = True
-    assert off(landmarks_by(acted()[0].frames[0], seen(wrong), None)) < 0.05
-
-
 def upper_half() -> Seen:
     """Of the person's silhouette; the legs, which do not move, were learnt with the background."""
     mask = acted()[0].masks[0].copy()
     rows = np.flatnonzero(mask.any(axis=1))
     mask[(rows[0] + rows[-1]) // 2 :] = False
     return seen(mask)
-
-
-def test_a_person_whose_legs_did_not_move_is_found_whole_in_the_whole_picture() -> None:
-    told = own_landmarks(acted()[0].frames[0], upper_half(), None, searches=True)
-    assert told.landmarks is not None
-    joints_px = np.array(told.landmarks.joints_px)
-    apart = np.linalg.norm(joints_px - acted()[1], axis=1) / acted()[2]
-    ankles = [JOINT_NAMES.index(name) for name in ("l_ankle", "r_ankle")]
-    assert apart[ankles].max() < 0.05
-    assert told.person is not None
-    assert overlap(told.person.over((240, 320), 0.5)[0] > 0, acted()[0].masks[0]) > 0.75
 
 
 def test_the_network_sees_the_person_where_they_are_and_nothing_outside_of_its_window() -> None:
@@ -134,10 +114,6 @@ def test_the_network_sees_the_person_where_they_are_and_nothing_outside_of_its_w
     assert (rows.min(), rows.max(), columns.min(), columns.max()) == pytest.approx(
         (60, 155, 100, 195), abs=1
     )
-
-
-def test_in_an_empty_room_nobody_is_seen() -> None:
-    assert landmarks_by(acted()[3], nobody(), None) is None
 
 
 def test_an_outline_of_which_the_picture_shows_nobody_has_landmarks_that_are_not_sure_at_all() -> (
@@ -284,55 +260,35 @@ def test_a_silhouette_elsewhere_than_the_person_of_before_is_looked_at_and_that_
         assert told.landmarks.confidence[0] == 0.7
 
 
-def test_a_search_looks_closer_only_where_it_finds_another_place(
+def test_without_a_silhouette_and_a_known_person_nothing_is_looked_at(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    window = window_of(Box(left=100, right=159, top=60, bottom=199))
-    inside_px = np.linspace((104.0, 67.0), (156.0, 193.0), 15)
-    there = (inside_px - np.array([WHOLE.left, WHOLE.top])) * (192 / WHOLE.side)
-    looks = Looks(monkeypatch, looked(0.6), looked(0.9, joints=there))
-    told = own_landmarks(PICTURE, seen(BOXED), None, searches=True)
-    assert [shown for shown, _ in looks.shown] == [window, WHOLE]
-    assert told.landmarks is not None
-    assert told.landmarks.confidence[0] == 0.6
-    looks = Looks(monkeypatch, looked(0.6), looked(0.3, joints=there + 60.0), looked(0.8))
-    told = own_landmarks(PICTURE, seen(BOXED), None, searches=True)
-    assert [is_masked for _, is_masked in looks.shown] == [True, False, False]
-    assert told.landmarks is not None
-    assert told.landmarks.confidence[0] == 0.8
-
-
-def test_a_person_unsurely_seen_with_the_silhouette_is_looked_at_closer_in_the_same_place(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """Without the silhouette: a shadow may be in it."""
-    inside_px = np.linspace((104.0, 67.0), (156.0, 193.0), 15)
-    there = (inside_px - np.array([WHOLE.left, WHOLE.top])) * (192 / WHOLE.side)
-    looks = Looks(monkeypatch, looked(0.49), looked(0.4, joints=there), looked(0.6))
-    result = own_landmarks(PICTURE, seen(BOXED), None)
-    assert [is_masked for _, is_masked in looks.shown] == [True, False, False]
-    assert result.landmarks is not None
-    assert result.landmarks.confidence[0] == 0.6
-
-
-@pytest.mark.parametrize(("first", "best"), [(0.49, 0.6), (0.49, 0.3)])
-def test_an_unsure_look_is_held_against_all_of_the_picture(
-    monkeypatch: pytest.MonkeyPatch, first: float, best: float
-) -> None:
-    """First whole, then closer, without the outline; the surest is believed."""
-    looks = Looks(monkeypatch, looked(first), looked(0.4), looked(best))
-    found = landmarks_by(PICTURE, seen(BOXED), None)
-    closer = window_about(WHOLE.in_picture(UPRIGHT), 0.0, 0.06)
-    assert looks.shown[1:] == [(WHOLE, False), (closer, False)]
-    assert found is not None
-    assert found.confidence[0] == max(first, best)
-
-
-def test_who_is_not_found_in_all_of_the_picture_is_not_looked_at_closer(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    looks = Looks(monkeypatch, looked(0.1))
+    looks = Looks(monkeypatch, looked(0.9))
     assert landmarks_by(PICTURE, nobody(), None) is None
+    assert looks.shown == []
+
+
+@pytest.mark.parametrize(("sure", "kept"), [(0.31, 0.31), (0.29, 0.7)])
+def test_beside_other_people_the_place_of_before_counts_for_more_than_a_surer_silhouette(
+    monkeypatch: pytest.MonkeyPatch, sure: float, kept: float
+) -> None:
+    before = Landmarks(tuple((200.0 + i, 90.0 + 9 * i) for i in range(15)), (0.9,) * 15)
+    Looks(monkeypatch, looked(0.7), looked(sure))
+    found = own_landmarks(PICTURE, seen(BOXED), before, crowded=True).landmarks
+    assert found is not None
+    assert found.confidence[0] == kept
+
+
+@pytest.mark.parametrize(
+    ("sure", "empty", "there"), [(0.31, 0.5, True), (0.29, 0.0, False), (0.9, 0.51, False)]
+)
+def test_a_look_at_a_window_must_be_sure_that_a_person_is_there(
+    monkeypatch: pytest.MonkeyPatch, sure: float, empty: float, there: bool
+) -> None:
+    looks = Looks(monkeypatch, looked(sure, empty))
+    found = look_in(PICTURE, WHOLE)
+    assert (found.landmarks is not None, found.person is not None) == (there, there)
+    assert found.surety == pytest.approx(sure if there else 0.0)
     assert looks.shown == [(WHOLE, False)]
 
 

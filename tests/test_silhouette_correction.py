@@ -10,7 +10,7 @@ from test_own_landmarks import acted, nobody, seen
 from common.body.observation import Landmarks
 from common.raster.similarity import Mask
 from viewer.landmarks.landmark_window import Window
-from viewer.landmarks.own_landmarks import LandmarkResult, PersonMask
+from viewer.landmarks.person_mask import LandmarkResult, PersonMask
 from viewer.room.silhouette_correction import _covered, _distance_2, _far_share, corrected
 
 

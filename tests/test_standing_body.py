@@ -11,7 +11,7 @@ from synth.motion.motions import MOTION, performance
 from synth.person.people import person
 from synth.picture.render import render
 from viewer.background.image_stack import median
-from viewer.landmarks.body_region import body_region
+from viewer.room.body_region import body_region
 from viewer.room.room_people import Look, looked_at
 from viewer.room.standing_body import (
     SHADES,

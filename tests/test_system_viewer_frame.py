@@ -19,7 +19,9 @@ from viewer.background import moved_camera
 from viewer.background.background import Background, learn
 from viewer.background.moved_objects import Patch
 from viewer.captured_frame import CapturedFrame
-from viewer.landmarks.own_landmarks import LandmarkResult
+from viewer.landmarks.person_mask import LandmarkResult, Shown
+from viewer.people.known_people import of_one
+from viewer.people.observed_people import observed
 from viewer.room.silhouette_correction import Corrected
 from viewer.silhouette import silhouette
 from viewer.silhouette.silhouette import Seen
@@ -104,7 +106,7 @@ def test_before_another_background_nothing_of_the_old_one_is_kept_but_how_it_was
     begun = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
     state = state._replace(
         moved=state.moved._replace(turn=turn, begun=begun),
-        landmarks=landmark_step.State(landmarks(0.9)),
+        landmarks=landmark_step.State(of_one(landmarks(0.9))),
     )
     new = room(140)
     found = track.with_background(state, new)
@@ -150,7 +152,7 @@ def test_the_body_is_expected_where_its_joints_were_where_the_guide_has_it_or_wh
 ) -> None:
     """The pelvis of sure landmarks, this viewer's half of the guide, the only view's last box."""
     state = track.init(setup(alone=alone), room())._replace(near_px=(7.0, 8.0))
-    known = landmark_step.State(None if sure is None else landmarks(sure))
+    known = landmark_step.State(of_one(None if sure is None else landmarks(sure)))
     state = state._replace(landmarks=known)
     assert track._near_px(state, guide() if guided else None) == near_px
 
@@ -159,7 +161,8 @@ def test_a_report_tells_what_the_silhouette_shows_and_when() -> None:
     mask = np.zeros((HIGH, WIDE), np.bool_)
     mask[10:50, 20:30] = True
     box = Box(left=20, right=29, top=10, bottom=49)
-    report = track._view_of(2, frame(), Seen(mask, box, 400, 3, cut=True), None)
+    shape = Seen(mask, box, 400, 3, cut=True)
+    report = track._view_of(2, frame(), shape, observed(shape, Shown(LandmarkResult(None)), 0.15))
     assert (report.frame, report.viewer, report.width, report.height) == (7, 2, WIDE, HIGH)
     assert (report.captured_s, report.clock_s, report.next_s) == (0.5, 1000.5, 0.6)
     person = person_of(report)
@@ -200,8 +203,11 @@ class Stages:
             self.told["near_px"] = near_px
             return state._replace(frames=state.frames + 5), self.seen
 
-        def corrected(seen: Seen, told: LandmarkResult, least_share: float) -> Corrected:
+        def corrected(
+            seen: Seen, told: LandmarkResult, least_share: float, others: Any
+        ) -> Corrected:
             self.told["corrected"] = (seen, told.landmarks, least_share)
+            assert not others
             if not things:
                 return Corrected(seen, None, is_changed=False)
             return Corrected(self.less, self.things, is_changed=True)
@@ -258,7 +264,9 @@ def test_a_camera_that_was_moved_looks_before_its_background_as_it_is_turned(
     state = track.init(setup(), room())
     still = state.moved
     assert still is not None
-    state = state._replace(landmarks=landmark_step.State(landmarks(0.9)), near_px=(7.0, 8.0))
+    state = state._replace(
+        landmarks=landmark_step.State(of_one(landmarks(0.9))), near_px=(7.0, 8.0)
+    )
     angle = np.radians(3.0)
     turn = np.array(
         [[np.cos(angle), 0, np.sin(angle)], [0, 1, 0], [-np.sin(angle), 0, np.cos(angle)]]

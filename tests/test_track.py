@@ -39,7 +39,7 @@ from common.rig.camera import project
 from viewer import landmark_step, track
 from viewer.background.background import learn
 from viewer.captured_frame import CapturedFrame
-from viewer.landmarks.own_landmarks import LandmarkResult
+from viewer.landmarks.person_mask import LandmarkResult
 from viewer.paper import pose_search
 
 
@@ -355,6 +355,7 @@ def looks_of(monkeypatch: pytest.MonkeyPatch, alone: bool) -> tuple[track.State,
         return LandmarkResult(landmarks_of(standing()))
 
     monkeypatch.setattr(landmark_step, "own_landmarks", look)
+    monkeypatch.setattr(landmark_step, "people_in", lambda _: [])
     setup = told_from_outside().setup
     settings = msgspec.structs.replace(setup.settings, landmarks="own")
     return viewer(1)._replace(setup=setup._replace(settings=settings, alone=alone)), looks

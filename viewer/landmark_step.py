@@ -1,51 +1,180 @@
-"""A viewer's landmarks, frame by frame: where the network looks, and when."""
+"""A viewer's landmarks, frame by frame: where the network looks, when, and at whom."""
 
 import math
+from operator import itemgetter
 from typing import Final, NamedTuple
 
-from common.body.observation import Landmarks
+from common.body.observation import Landmarks, Pixel
 from common.config.settings import Settings
+from common.video.pictures import Image
 from viewer.captured_frame import CapturedFrame
 from viewer.landmarks.landmark_looks import network_of
+from viewer.landmarks.landmark_window import Window, same_place
 from viewer.landmarks.outside_source import nearest_landmarks
-from viewer.landmarks.own_landmarks import LandmarkModel, LandmarkResult, own_landmarks
+from viewer.landmarks.own_landmarks import (
+    SURE,
+    LandmarkModel,
+    look_in,
+    own_landmarks,
+    window_of_joints,
+)
+from viewer.landmarks.person_mask import LandmarkResult, Shown
+from viewer.people import known_people
+from viewer.people.known_people import PEOPLE, Look, People, corners_of, is_person
+from viewer.people.people_detector import Detection, overlap, people_in
 from viewer.silhouette.silhouette import Seen
 
 SEARCH_S: Final = 0.5
-"""Time between two searches of the whole picture, in seconds, beside the looks at known people."""
+"""Time between two searches of the whole picture for people, in seconds, beside the looks at known
+people."""
+URGENT_S: Final = 0.25
+"""The same where the followed person is not known, or not surely seen."""
+WHOLE: Final = 0.05
+"""By how much a look is surer than that in the window where the person is detected, to be kept:
+its own window may hold a part of them."""
+NUMBER: Final = itemgetter(0)
+IS_OF: Final = 0.3
+"""Intersection over union of a detection and a known person's joints from which it is of them."""
 
 
 class State(NamedTuple):
     """What one frame hands to the next."""
 
-    known: Landmarks | None = None
-    """Those of the last processed frame."""
+    people: People = People()
     searched_s: float = -math.inf
     """Capture time of the last frame whose whole picture was searched for people."""
 
+    @property
+    def known(self) -> Landmarks | None:
+        """The followed person, as last seen; None where no person is known."""
+        return known_people.last(self.people)
+
 
 def step(
-    state: State, frame: CapturedFrame, seen: Seen, settings: Settings, *, alone: bool
-) -> tuple[State, LandmarkResult]:
+    state: State,
+    frame: CapturedFrame,
+    seen: Seen,
+    settings: Settings,
+    *,
+    alone: bool,
+    root_px: Pixel | None = None,
+) -> tuple[State, Shown]:
     """The landmarks of a frame: our own network's, or those that an outside source sent with it.
 
     A frame that comes late is skipped, and keeps what is known. A single view has no other to rely
-    on: its landmarks are computed even then, with one look instead of two.
+    on: its landmarks are computed even then, with one look instead of two. An outside source is
+    asked for one person.
 
     Args:
         state: From the frame before.
         frame: The picture, and the landmarks of an outside source.
-        seen: The silhouette in it.
+        seen: The followed person's silhouette in it.
         settings: They name the network or the source.
         alone: The viewer is the only one of its run.
+        root_px: Where the integrator predicts the pelvis of the person that it follows; None: it
+            does not.
     """
     if not settings.looks_itself:
         result = LandmarkResult(nearest_landmarks(frame.landmarks, seen.box))
-        return State(result.landmarks), result
+        return State(known_people.of_one(result.landmarks, frame.captured_s)), Shown(result)
     if frame.hurried and not alone:
-        return state, LandmarkResult(None)
+        return state, Shown(LandmarkResult(None), state.people.followed)
+    people = known_people.expected_at(state.people, root_px)
     model = LandmarkModel(network_of(settings.landmarks), alone and not frame.hurried)
-    searches = not frame.hurried and frame.captured_s >= state.searched_s + SEARCH_S
-    result = own_landmarks(frame.picture, seen, state.known, model, searches=searches)
-    searched_s = frame.captured_s if searches else state.searched_s
-    return State(result.landmarks, searched_s), result
+    looks, new = _looks(frame.picture, seen, people, model), list[LandmarkResult]()
+    searched_s, followed = state.searched_s, looks[people.followed]
+    if not frame.hurried and frame.captured_s >= searched_s + _interval_s(followed):
+        searched_s = frame.captured_s
+        looks, new = _searched(frame.picture, looks, people, model)
+    after, shown = _identified(people, frame.captured_s, looks, new)
+    if not shown and not is_person(followed.landmarks):
+        shown = {after.followed: followed}
+    return State(after, searched_s), _shown(after, shown)
+
+
+def _looks(
+    picture: Image, seen: Seen, people: People, model: LandmarkModel
+) -> dict[int, LandmarkResult]:
+    """What the network sees where the people who are known were, by their numbers."""
+    others = people.others
+    looks = {
+        people.followed: own_landmarks(
+            picture, seen, known_people.last(people), model, crowded=bool(others)
+        )
+    }
+    for track in others:
+        window = window_of_joints(track.landmarks)
+        if window is not None:
+            looks[track.number] = look_in(picture, window, _once(model))
+    return looks
+
+
+def _searched(
+    picture: Image, looks: dict[int, LandmarkResult], people: People, model: LandmarkModel
+) -> tuple[dict[int, LandmarkResult], list[LandmarkResult]]:
+    """The looks, taken again where a person is detected elsewhere than in the window, and the looks
+    at people who are detected and not known."""
+    places = {track.number: track.landmarks for track in people.tracks}
+    places |= {n: each.landmarks for n, each in looks.items() if is_person(each.landmarks)}
+    looks, new = dict(looks), list[Detection]()
+    for detection in people_in(picture):
+        number = _person_at(detection, places)
+        if number is None:
+            new.append(detection)
+            continue
+        places.pop(number)
+        if not _is_sure_at(looks.get(number), detection.window):
+            own = model if number == people.followed else _once(model)
+            again = look_in(picture, detection.window, own)
+            look = looks.get(number, again)
+            looks[number] = look if look.surety > again.surety + WHOLE else again
+    own = model if people.person is None else _once(model)
+    return looks, [look_in(picture, each.window, own) for each in new[:PEOPLE]]
+
+
+def _is_sure_at(look: LandmarkResult | None, window: Window) -> bool:
+    """Whether a look was sure, and taken in about the same window."""
+    if look is None or look.person is None or look.surety < SURE:
+        return False
+    return same_place(look.person.window, window)
+
+
+def _person_at(detection: Detection, places: dict[int, Landmarks]) -> int | None:
+    """The known person whom a detection shows; None: no one."""
+    shared = {
+        number: overlap(detection.corners_px, corners_of(landmarks))
+        for number, landmarks in places.items()
+    }
+    best = max(shared, key=shared.__getitem__, default=None)
+    return best if best is not None and shared[best] >= IS_OF else None
+
+
+def _identified(
+    people: People, at_s: float, looks: dict[int, LandmarkResult], new: list[LandmarkResult]
+) -> tuple[People, dict[int, LandmarkResult]]:
+    """The people after a frame, and what is seen of each, by number."""
+    results = [*looks.items(), *((None, each) for each in new)]
+    given = [
+        (Look(number, each.landmarks), each)
+        for number, each in results
+        if each.landmarks is not None and is_person(each.landmarks)
+    ]
+    after, numbers = known_people.step(people, at_s, [look for look, _ in given])
+    owned = zip(numbers, (each for _, each in given), strict=True)
+    return after, {number: each for number, each in owned if number is not None}
+
+
+def _shown(people: People, shown: dict[int, LandmarkResult]) -> Shown:
+    """The people of a frame, the followed one apart: not seen where another look has the place."""
+    followed = shown.pop(people.followed, LandmarkResult(None))
+    return Shown(followed, people.followed, tuple(sorted(shown.items(), key=NUMBER)))
+
+
+def _interval_s(result: LandmarkResult) -> float:
+    """Time from the last search of the whole picture to the next."""
+    return SEARCH_S if result.surety >= SURE else URGENT_S
+
+
+def _once(model: LandmarkModel) -> LandmarkModel:
+    """The model with one look at a window."""
+    return model._replace(twice=False)

@@ -11,7 +11,7 @@ from common.body.observation import Box, Landmarks, Observation, Pixel
 from common.bus.messages import MOTION_S, Guide, View, ViewerNumber
 from common.config.settings import Settings
 from common.method import Method
-from common.raster.silhouette_report import mask_of, pack, with_person
+from common.raster.silhouette_report import mask_of, with_person
 from common.raster.similarity import Mask
 from common.rig.camera import Camera
 from viewer import camera_fault, landmark_step
@@ -21,9 +21,11 @@ from viewer.background.moved_objects import Patch
 from viewer.background.turned_picture import lens_of, turned_background
 from viewer.captured_frame import CapturedFrame
 from viewer.expected_body import expected_body
-from viewer.landmarks.own_landmarks import LandmarkResult
+from viewer.landmarks.person_mask import LandmarkResult, Shown
 from viewer.paper import pose_search
 from viewer.paper.measure import opening_measure
+from viewer.people.known_people import of_one
+from viewer.people.observed_people import observed
 from viewer.room.silhouette_correction import corrected, is_trusted
 from viewer.silhouette import silhouette
 from viewer.silhouette.silhouette import Seen
@@ -96,7 +98,7 @@ def init(
         tuple(patches),
         pose_search.init(setup.viewer, setup.camera, setup.settings.search, setup.method),
         standing,
-        landmark_step.State(somebody if setup.method.landmarks else None),
+        landmark_step.State(of_one(somebody if setup.method.landmarks else None)),
         moved=_watched(setup, background, None),
     )
 
@@ -152,17 +154,24 @@ def look(state: State, frame: CapturedFrame, guide: Guide | None) -> tuple[State
         return state, msgspec.structs.replace(view, fault=fault), mask_of(view)
     state = _followed(_patched(state, frame.index), frame)
     remembered, seen = silhouette.step(state.silhouette, frame.picture, _near_px(state, guide))
-    setup, known, result = state.setup, state.landmarks, LandmarkResult(None)
+    setup, known, shown = state.setup, state.landmarks, Shown(LandmarkResult(None))
     if setup.method.landmarks:
-        known, result = landmark_step.step(known, frame, seen, setup.settings, alone=setup.alone)
+        known, shown = landmark_step.step(
+            known,
+            frame,
+            seen,
+            setup.settings,
+            alone=setup.alone,
+            root_px=_followed_px(guide, setup.viewer),
+        )
     least_share = setup.settings.silhouette.min_height_share
-    held = corrected(seen, result, least_share)
+    held = corrected(seen, shown.followed, least_share, shown.masks)
     if held.is_changed:
         remembered = silhouette.without_things(
             remembered, state.silhouette, frame.picture, held.things
         )
     seen = held.seen
-    view = _view_of(setup.viewer, frame, seen, result.landmarks)
+    view = _view_of(setup.viewer, frame, seen, observed(seen, shown, least_share))
     if state.moved is not None:
         view = msgspec.structs.replace(view, shift=state.moved.shift)
     state = state._replace(silhouette=remembered, near_px=_middle_px(seen.box), landmarks=known)
@@ -204,13 +213,13 @@ def describe(state: State, view: View, mask: Mask, guide: Guide | None) -> tuple
 def without_person(viewer: ViewerNumber, frame: CapturedFrame) -> View:
     """The report of a picture that is not processed."""
     nothing = np.zeros(frame.picture.shape[:2], np.bool_)
-    return _view_of(viewer, frame, Seen(nothing, None, 0, 0, cut=False), None)
+    return _view_of(viewer, frame, Seen(nothing, None, 0, 0, cut=False), ())
 
 
 def _view_of(
-    viewer: ViewerNumber, frame: CapturedFrame, seen: Seen, landmarks: Landmarks | None
+    viewer: ViewerNumber, frame: CapturedFrame, seen: Seen, people: tuple[Observation, ...]
 ) -> View:
-    """The observation of a silhouette and its landmarks."""
+    """The message of a frame, its followed person's silhouette and its people."""
     height, width = seen.mask.shape
     return View(
         frame=frame.index,
@@ -219,23 +228,10 @@ def _view_of(
         viewer=viewer,
         width=width,
         height=height,
-        people=() if seen.box is None else (_person_of(seen, seen.box, landmarks),),
+        people=people,
         blobs=seen.blobs,
         next_s=frame.next_s,
         upright=frame.upright,
-    )
-
-
-def _person_of(seen: Seen, box: Box, landmarks: Landmarks | None) -> Observation:
-    height, width = seen.mask.shape
-    return Observation(
-        width=width,
-        height=height,
-        silhouette=pack(seen.mask),
-        box=box,
-        area_px=seen.area_px,
-        cut=seen.cut,
-        landmarks=landmarks,
     )
 
 
@@ -272,6 +268,14 @@ def _near_px(state: State, guide: Guide | None) -> Pixel | None:
     if known is not None:
         return known.root_px
     return state.near_px if state.setup.alone else None
+
+
+def _followed_px(guide: Guide | None, viewer: ViewerNumber) -> Pixel | None:
+    """Where the body that the integrator surely follows is in this view; None where it is not."""
+    if guide is None or guide.status != "tracking":
+        return None
+    known = expected_body(guide, viewer)
+    return None if known is None else known.root_px
 
 
 def _middle_px(box: Box | None) -> Pixel | None:

@@ -1,6 +1,6 @@
 """The network that detects people: MoveNet MultiPose's published graph, cut and in bytes.
 
-`viewer/landmarks/people.onnx` holds it (Copyright Google LLC, Apache License 2.0, see NOTICE);
+`viewer/people/people.onnx` holds it (Copyright Google LLC, Apache License 2.0, see NOTICE);
 `docs/models.md` says where it was taken from. To write it again:
 
     python -m lab.landmark_lessons.multipose_file movenet-multipose.json people.onnx

@@ -22,10 +22,10 @@ from runtime.terminal import Tell
 from synth.picture.picture_examples import FRAME, FRAMED, SIDE_PX, PictureExample
 from viewer import track
 from viewer.capture import recorded
-from viewer.landmarks.body_region import body_region, stature_px
 from viewer.landmarks.landmark_sources import outside_sources
 from viewer.landmarks.landmark_window import Window, planes_of
 from viewer.room.background_source import background_of_film
+from viewer.room.body_region import body_region, stature_px
 
 SIZE: Final = "640x480"
 """Bound of the picture from which windows are cut."""

@@ -5,7 +5,6 @@ from operator import attrgetter
 from pathlib import Path
 from typing import Final, NamedTuple
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -16,7 +15,6 @@ from common.video.pictures import Image
 from viewer.landmarks.landmark_looks import SHIPPED
 from viewer.landmarks.landmark_network import find
 from viewer.landmarks.landmark_window import (
-    SIDE,
     Places,
     Window,
     planes_of,
@@ -26,6 +24,7 @@ from viewer.landmarks.landmark_window import (
     window_about,
     window_of,
 )
+from viewer.landmarks.person_mask import LandmarkResult, PersonMask
 from viewer.silhouette.silhouette import Seen
 
 SURE: Final = 0.5
@@ -83,56 +82,19 @@ class _Look(NamedTuple):
 SUREST: Final = attrgetter("surety")
 
 
-class PersonMask(NamedTuple):
-    """The person in a window, as the network sees them."""
-
-    logits: NDArray[np.float32]
-    """(CELLS, CELLS)"""
-    window: Window
-
-    def over(self, shape: tuple[int, ...], *probabilities: float) -> list[NDArray[np.uint8]]:
-        """For each probability (H, W) 1 where the person is at least so probable; 0 outside of the
-        window.
-
-        Args:
-            shape: Of the picture, (H, W, ...).
-            probabilities: Between 0 and 1.
-        """
-        high, wide = shape[:2]
-        cells = len(self.logits) - 1.0
-        corners = np.array([(0.0, 0.0), (cells, 0.0), (0.0, cells)])
-        in_planes = (corners + 0.5) * (SIDE / len(self.logits))
-        onto = cv2.getAffineTransform(
-            corners.astype(np.float32),
-            (self.window.in_picture(in_planes) - 0.5).astype(np.float32),
-        )
-        logits = cv2.warpAffine(self.logits, onto, (wide, high), borderValue=-math.inf)
-        least = (math.log(each / (1.0 - each)) for each in probabilities)
-        return [(logits >= each).astype(np.uint8) for each in least]
-
-
-class LandmarkResult(NamedTuple):
-    """What the network makes of a frame."""
-
-    landmarks: Landmarks | None
-    """None: it sees no person."""
-    person: PersonMask | None = None
-    """Where the network sees the person; None: an outside source does not say."""
-
-
 def own_landmarks(
     picture: Image,
     seen: Seen,
     before: Landmarks | None,
     eye: LandmarkModel = LandmarkModel(),
     *,
-    searches: bool = False,
+    crowded: bool = False,
 ) -> LandmarkResult:
-    """What the network makes of a picture.
+    """What the network makes of the person with a silhouette, or of one known from before.
 
     It looks where the silhouette is, in a window as upright as the trunk was in the frame before.
     Where it is not sure there, or saw a person elsewhere the frame before, it also looks there,
-    without the silhouette; where it knows of no person, in all of the picture. A silhouette shows
+    without the silhouette. A silhouette shows
     what changed: it lacks legs that stay where they are, and so does the window about it. A trunk
     that leans in its window is looked at again, upright: photographs taught the network such. Of
     synthetic people who lean by 60 to 180 degrees 60 % of the joints are within a tenth of the
@@ -146,10 +108,14 @@ def own_landmarks(
         seen: The silhouette in it.
         before: Of the frame before.
         eye: Which network looks, and how often.
-        searches: All of the picture is looked at too, whatever is known.
+        crowded: Other people are known, and a silhouette elsewhere may be theirs: where the person
+            was, a look that shows one counts, however sure the other is.
     """
-    known = None if before is None else _about(np.array(before.joints_px), before.confidence)
-    best = _set_upright(picture, _surest(picture, seen, known, eye, searches), eye)
+    known = None if before is None else window_of_joints(before)
+    first = _surest(picture, seen, known, eye, crowded)
+    if first is None:
+        return LandmarkResult(None)
+    best = _set_upright(picture, first, eye)
     if seen.box is None and (best.nobody > 0.5 or best.surety < LEAST):
         return LandmarkResult(None)
     if best.surety < SURE and best.nobody > EMPTY:
@@ -157,9 +123,28 @@ def own_landmarks(
     return LandmarkResult(_told(best), PersonMask(best.person, best.window))
 
 
+def look_in(picture: Image, window: Window, eye: LandmarkModel = LandmarkModel()) -> LandmarkResult:
+    """What the network makes of the person in a window, without a silhouette.
+
+    Args:
+        picture: (H, W, 3)
+        window: Of the picture.
+        eye: Which network looks, and how often.
+    """
+    best = _set_upright(picture, _look(picture, None, window, eye), eye)
+    if best.nobody > 0.5 or best.surety < LEAST:
+        return LandmarkResult(None)
+    return LandmarkResult(_told(best), PersonMask(best.person, best.window))
+
+
+def window_of_joints(landmarks: Landmarks) -> Window | None:
+    """The window about joints, as upright as the trunk; None where too few are sure."""
+    return _about(np.array(landmarks.joints_px), landmarks.confidence)
+
+
 def found_anywhere(picture: Image, eye: LandmarkModel = TWICE) -> tuple[Landmarks, float]:
     """A person in a picture (H, W, 3) of which nothing is known, and how probably no person is."""
-    best = _set_upright(picture, _any_way_up(picture, _anywhere(picture, None, eye), eye), eye)
+    best = _set_upright(picture, _any_way_up(picture, _anywhere(picture, eye), eye), eye)
     return _told(best), best.nobody
 
 
@@ -192,16 +177,16 @@ def _told(best: _Look) -> Landmarks:
 
 
 def _surest(
-    picture: Image, seen: Seen, known: Window | None, eye: LandmarkModel, searches: bool
-) -> _Look:
-    """The surest look, the first of them where that is sure.
+    picture: Image, seen: Seen, known: Window | None, eye: LandmarkModel, crowded: bool
+) -> _Look | None:
+    """The surest look, the first of them where that is sure; None where there is no window.
 
     Args:
         picture: (H, W, 3)
         seen: The silhouette in it.
         known: About where a person was the frame before.
         eye: How it is looked at.
-        searches: As in `own_landmarks`.
+        crowded: As in `own_landmarks`.
     """
     looks = []
     turn_deg = 0.0 if known is None else known.turn_deg
@@ -209,29 +194,21 @@ def _surest(
         window = turned_window_of(seen.mask, turn_deg) if turn_deg else window_of(seen.box)
         looks.append(_look(picture, seen.mask, window, eye))
     is_elsewhere = known is not None and bool(looks) and not same_place(looks[0].window, known)
-    if not looks or looks[0].surety < SURE or is_elsewhere:
-        if known is None:
-            searches = True
-        else:
-            looks.append(_look(picture, None, known, eye))
+    if known is not None and (not looks or looks[0].surety < SURE or is_elsewhere):
+        looks.append(_look(picture, None, known, eye))
+        if crowded and is_elsewhere and looks[-1].surety >= LEAST:
+            return looks[-1]
     best = max(looks, key=SUREST, default=None)
-    if searches or best is None:
-        best = _anywhere(picture, best, eye)
-    if seen.box is None or not turn_deg or best.surety >= SURE:
+    if best is None or seen.box is None or not turn_deg or best.surety >= SURE:
         return best
     return max(best, _look(picture, seen.mask, window_of(seen.box), eye), key=SUREST)
 
 
-def _anywhere(picture: Image, known: _Look | None, eye: LandmarkModel) -> _Look:
-    """A person anywhere: first in all of the picture, then closer, unless that is where a sure look
-    was taken; the known look, where that is surer."""
+def _anywhere(picture: Image, eye: LandmarkModel) -> _Look:
+    """A person anywhere: first in all of the picture, then closer."""
     found = _look(picture, None, whole(picture.shape), eye)
     window = _about(found.joints_px, tuple(found.confidence))
-    if window is not None:
-        if known is not None and known.surety >= SURE and same_place(window, known.window):
-            return known
-        found = _look(picture, None, window, eye)
-    return found if known is None else max(known, found, key=SUREST)
+    return found if window is None else _look(picture, None, window, eye)
 
 
 def _any_way_up(picture: Image, look: _Look, eye: LandmarkModel) -> _Look:

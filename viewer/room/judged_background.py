@@ -11,7 +11,7 @@ from common.method import DEFAULT
 from common.raster.similarity import Mask
 from common.video.pictures import Image
 from viewer.background.background import Background
-from viewer.landmarks.body_region import body_region
+from viewer.room.body_region import body_region
 from viewer.room.room_people import Look
 from viewer.silhouette import silhouette
 

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from common.body.observation import Landmarks
 from common.video.pictures import Image
-from viewer.landmarks.body_region import Bytes, body_region
 from viewer.landmarks.own_landmarks import found_anywhere, found_between
+from viewer.room.body_region import Bytes, body_region
 
 NOBODY: Final = 0.35
 """Probability that a picture is empty, below which it shows a person: 0.00 to 0.17 in pictures of a

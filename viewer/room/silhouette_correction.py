@@ -1,6 +1,7 @@
 """A silhouette compared with the landmark network: what lies beside the person goes, what it lacks
 is added."""
 
+from collections.abc import Sequence
 from typing import Final, NamedTuple
 
 import cv2
@@ -10,7 +11,8 @@ from numpy.typing import NDArray
 from common.body.body import Floats
 from common.body.observation import Landmarks
 from common.compiled import compiled
-from viewer.landmarks.body_region import (
+from viewer.landmarks.person_mask import LIKELY, LandmarkResult, PersonMask, likeliest
+from viewer.room.body_region import (
     BONES,
     Bytes,
     body_region,
@@ -18,7 +20,6 @@ from viewer.landmarks.body_region import (
     shown,
     stature_px,
 )
-from viewer.landmarks.own_landmarks import LandmarkResult, PersonMask
 from viewer.silhouette.silhouette import Seen, seen_of
 
 TRUSTED: Final = 0.5
@@ -29,9 +30,9 @@ FAR: Final = 0.2
 """Statures from the body at which a silhouette is a thing's: a door's, a shadow's."""
 TIGHT: Final = 0.06
 """Statures around the bones of an outside source that are left of a silhouette."""
-POSSIBLE, LIKELY = 0.2, 0.5
-"""Probabilities that a pixel shows the person: from the first on a silhouette's pixel stays, from
-the second on one is added."""
+POSSIBLE: Final = 0.2
+"""Probability that a pixel shows the person from which on a silhouette's pixel stays; from LIKELY
+on one is added."""
 LACKING: Final = 0.35
 """Share of the likely person from which a silhouette that lacks it is completed; 0.23 at most in
 720 frames of synthetic people whose silhouettes are whole (docs/measurements.md)."""
@@ -63,7 +64,9 @@ class Corrected(NamedTuple):
     is_changed: bool
 
 
-def corrected(seen: Seen, result: LandmarkResult, least_share: float) -> Corrected:
+def corrected(
+    seen: Seen, result: LandmarkResult, least_share: float, others: Sequence[PersonMask] = ()
+) -> Corrected:
     """A silhouette without what is no body, and with what is missing of it.
 
     Args:
@@ -71,26 +74,39 @@ def corrected(seen: Seen, result: LandmarkResult, least_share: float) -> Correct
         result: Landmarks of the same frame; None, or unsure: the silhouette stands. Our own network
             also shows where the person is; of an outside source's person the bones alone are known.
         least_share: Of the picture's height; a lower silhouette is no person's.
+        others: Other people in the picture: pixels that are more probably theirs are not the
+            person's.
     """
-    landmarks, mask = result.landmarks, seen.mask.view(np.uint8)
+    landmarks, whole = result.landmarks, seen.mask.view(np.uint8)
     if landmarks is None:
         return Corrected(seen, None, is_changed=False)
+    theirs = likeliest(others, result.person, whole.shape) if others else None
+    mask = _less(whole, theirs)
     if result.person is not None:
-        body, things = _by_person(mask, landmarks, result.person)
+        body, things = _by_person(mask, landmarks, result.person, theirs)
     else:
         body, things = _by_bones(mask, landmarks)
-    if body is mask:
+    if body is whole:
         return Corrected(seen, None, is_changed=False)
     found = seen_of(body, max(seen.blobs, 1), least_share)
     return Corrected(found, things, is_changed=True)
 
 
-def _by_person(mask: Bytes, landmarks: Landmarks, person: PersonMask) -> tuple[Bytes, Bytes | None]:
+def _less(mask: Bytes, theirs: Bytes | None) -> Bytes:
+    """A mask (H, W) without the pixels of other people; itself where it has none of them."""
+    if theirs is None or not cv2.countNonZero(cv2.bitwise_and(mask, theirs)):
+        return mask
+    return np.asarray(cv2.subtract(mask, theirs))
+
+
+def _by_person(
+    mask: Bytes, landmarks: Landmarks, person: PersonMask, theirs: Bytes | None
+) -> tuple[Bytes, Bytes | None]:
     """The body (H, W) where the network sees the person, and what else was in the silhouette; None
     if that is little. The silhouette itself where both agree, or the network is not sure."""
     if np.mean(landmarks.confidence) < SEEN:
         return mask, None
-    possible, likely = person.over(mask.shape, POSSIBLE, LIKELY)
+    possible, likely = (_less(each, theirs) for each in person.over(mask.shape, POSSIBLE, LIKELY))
     near, known = cv2.bitwise_and(mask, possible), cv2.bitwise_and(mask, likely)
     beside = cv2.countNonZero(mask) - cv2.countNonZero(near)
     lacking = cv2.countNonZero(likely) - cv2.countNonZero(known)
