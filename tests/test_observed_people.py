@@ -1,0 +1,143 @@
+"""What a viewer reports of several people: each one's own joints and pixels."""
+
+from functools import lru_cache
+
+import numpy as np
+import pytest
+from crowds import Crowd, crowd, whole_people
+from test_own_landmarks import seen
+
+from common.body.observation import Landmarks, Observation
+from common.config.settings import Settings
+from common.raster.silhouette_report import unpack
+from common.raster.similarity import Mask
+from viewer.captured_frame import CapturedFrame
+from viewer.landmark_step import State, step
+from viewer.landmarks.landmark_window import Window
+from viewer.landmarks.person_mask import LandmarkResult, PersonMask, Shown, likeliest
+from viewer.people.observed_people import observed
+from viewer.room.silhouette_correction import corrected
+from viewer.silhouette.silhouette import Seen
+
+PERSON = Landmarks(((1.0, 2.0),) * 15, (0.9,) * 15)
+SHAPE = (48, 48)
+
+
+def result(left: int, right: int, logit: float = 2.0) -> LandmarkResult:
+    """A person in some columns of a picture of SHAPE, one cell a pixel."""
+    logits = np.full(SHAPE, -4.0, np.float32)
+    logits[4:44, left:right] = logit
+    return LandmarkResult(PERSON, PersonMask(logits, Window(0, 0, 48)))
+
+
+def silhouette(left: int, right: int) -> Seen:
+    mask = np.zeros(SHAPE, np.bool_)
+    mask[4:44, left:right] = True
+    return seen(mask)
+
+
+def columns(mask: Mask) -> tuple[int, int]:
+    held = np.flatnonzero(mask.any(axis=0))
+    return int(held[0]), int(held[-1]) + 1
+
+
+def test_the_followed_person_is_first_and_others_have_their_own_pixels() -> None:
+    shown = Shown(result(4, 20), 3, ((5, result(16, 30, 1.0)), (7, result(28, 44, 3.0))))
+    first, second, third = observed(silhouette(4, 20), shown, 0.15)
+    assert [each.track for each in (first, second, third)] == [3, 5, 7]
+    assert [columns(unpack(each)) for each in (first, second, third)] == [
+        (4, 20),
+        (20, 28),
+        (28, 44),
+    ]
+    assert {each.landmarks for each in (first, second, third)} == {PERSON}
+    assert (second.width, second.height, second.cut) == (48, 48, False)
+
+
+def test_without_the_followed_person_no_person_is_reported() -> None:
+    """The first is the followed one: no other may stand in that place."""
+    other = (5, result(28, 44))
+    assert observed(silhouette(4, 20), Shown(LandmarkResult(None), 3, (other,)), 0.15) == ()
+    nothing = Seen(np.zeros(SHAPE, np.bool_), None, 0, 0, cut=False)
+    assert observed(nothing, Shown(result(4, 20), 3, (other,)), 0.15) == ()
+    (alone,) = observed(silhouette(4, 20), Shown(LandmarkResult(None), 3), 0.15)
+    assert (alone.track, alone.landmarks) == (3, None)
+
+
+def test_another_who_is_too_low_to_be_a_person_is_left_out() -> None:
+    low = np.full(SHAPE, -4.0, np.float32)
+    low[40:44, 30:40] = 2.0
+    small = LandmarkResult(PERSON, PersonMask(low, Window(0, 0, 48)))
+    shown = Shown(result(4, 20), 0, ((1, small),))
+    assert len(observed(silhouette(4, 20), shown, 0.15)) == 1
+    assert len(observed(silhouette(4, 20), shown, 0.05)) == 2
+
+
+def test_a_pixel_is_anothers_where_they_are_likely_and_likelier() -> None:
+    one, other = result(4, 20, 1.0).person, result(10, 30, 2.0).person
+    assert one is not None
+    assert other is not None
+    assert columns(likeliest([other], one, SHAPE) > 0) == (10, 30)
+    assert columns(likeliest([one], other, SHAPE) > 0) == (4, 10)
+    assert columns(likeliest([one, other], None, SHAPE) > 0) == (4, 30)
+    unlikely = result(30, 40, -0.1).person
+    assert unlikely is not None
+    assert not likeliest([unlikely], one, SHAPE).any()
+
+
+def test_of_a_region_that_holds_two_people_the_silhouette_is_the_followed_ones() -> None:
+    """What is the other's is no thing: it must not become background."""
+    other = result(18, 40).person
+    assert other is not None
+    held = corrected(silhouette(4, 40), result(4, 20, 1.0), 0.15, [other])
+    assert held.is_changed
+    assert columns(held.seen.mask) == (4, 18)
+    assert held.things is None
+    apart = corrected(silhouette(4, 18), result(4, 20, 1.0), 0.15, [other])
+    assert not apart.is_changed
+
+
+@lru_cache(maxsize=1)
+def pairs() -> list[tuple[Crowd, tuple[Observation, ...]]]:
+    """Ten pictures of two people who stand close, both found at first sight in a region that holds
+    both."""
+    people, made = whole_people(61_700, 20), list[tuple[Crowd, tuple[Observation, ...]]]()
+    for at in range(0, 20, 2):
+        scene = crowd(people[at : at + 2], [(115, 225, 150), (195, 230, 160)], at)
+        both = seen(scene.masks[0] | scene.masks[1])
+        frame = CapturedFrame(0, 0.0, 0.0, scene.picture)
+        _, shown = step(State(), frame, both, Settings(), alone=False)
+        held = corrected(both, shown.followed, 0.15, shown.masks)
+        made.append((scene, observed(held.seen, shown, 0.15)))
+    return made
+
+
+def off(found: Observation, scene: Crowd, which: int) -> float:
+    """Median distance of the joints from a person's, in their size."""
+    assert found.landmarks is not None
+    true = scene.joints_px[which]
+    apart = np.linalg.norm(np.array(found.landmarks.joints_px) - true, axis=1)
+    return float(np.median(apart) / np.ptp(true, axis=0).max())
+
+
+@pytest.mark.slow
+def test_of_two_people_close_to_each_other_each_has_their_own_joints_and_pixels() -> None:
+    both, near, shared, own = 0, list[float](), list[float](), list[float]()
+    for scene, people in pairs():
+        both += len(people) == 2
+        taken = set[int]()
+        for each in people:
+            which = min((0, 1), key=lambda at: off(each, scene, at))
+            near.append(off(each, scene, which))
+            taken.add(which)
+            mask = unpack(each)
+            true, others = scene.masks[which], scene.masks[1 - which]
+            own.append(float((mask & true).sum() / (mask | true).sum()))
+            shared.append(float((mask & others).sum() / others.sum()))
+        assert len(taken) == len(people), "no two of them are one"
+        if len(people) == 2:
+            assert not (unpack(people[0]) & unpack(people[1])).any()
+    assert both >= 7
+    assert np.median(near) < 0.05
+    assert np.median(own) > 0.7
+    assert np.median(shared) < 0.1

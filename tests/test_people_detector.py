@@ -1,0 +1,75 @@
+"""Several people in a whole picture: detected in their places, at any size."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from crowds import corners, crowd, whole_people
+from test_own_landmarks import acted
+
+from common.video.pictures import Image
+from viewer.people.people_detector import Detection, overlap, people_in
+
+
+def shares(detected: list[Detection], *true: np.ndarray) -> list[float]:
+    """Of each true box the largest overlap with a detection."""
+    return [max((overlap(each, one.corners_px) for one in detected), default=0.0) for each in true]
+
+
+def recall(tall: int, seed: int) -> float:
+    """Of 40 people, two in each picture."""
+    people, found = whole_people(seed, 40), list[float]()
+    for at in range(0, 40, 2):
+        made = crowd(people[at : at + 2], [(80, 230, tall), (240, 230, tall)], at)
+        found += shares(people_in(made.picture), *map(corners, made.masks))
+    return float(np.mean(np.array(found) > 0.35))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("tall", "least"), [(30, 0.5), (45, 0.65), (80, 0.8), (160, 0.9)])
+def test_people_of_any_size_are_detected(tall: int, least: float) -> None:
+    """From an eighth of the picture's height on; half of their poses have no order."""
+    assert recall(tall, 61_500) >= least
+
+
+def test_two_people_are_two_detections_and_an_empty_room_is_none() -> None:
+    shot, joints_px, _, empty = acted()
+    beside = np.concatenate([shot.frames[0][:, 70:250], shot.frames[0][:, 70:250]], axis=1)
+    detected = people_in(beside)
+    box = np.stack([joints_px.min(axis=0), joints_px.max(axis=0)]) - (70.0, 0.0)
+    assert len(detected) == 2
+    assert min(shares(detected, box, box + np.array([180.0, 0.0]))) > 0.6
+    assert people_in(empty) == []
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [lambda picture: picture[::2, ::2], lambda picture: picture.repeat(2, 0).repeat(2, 1)],
+)
+def test_places_are_the_pictures_own_pixels_at_any_size(
+    changed: Callable[[Image], Image],
+) -> None:
+    picture = acted()[0].frames[0]
+    other = changed(picture)
+    (first,), (second,) = people_in(picture), people_in(other)
+    scale = len(other) / len(picture)
+    assert overlap(first.corners_px * scale, second.corners_px) > 0.8
+    off_px = np.linalg.norm(first.joints_px * scale - second.joints_px, axis=1)
+    assert np.median(off_px) < 6.0 * scale
+
+
+def test_a_window_is_upright_about_the_box_and_turned_with_a_trunk_that_leans() -> None:
+    joints = np.zeros((17, 2))
+    joints[[5, 6]], joints[[11, 12]] = (100.0, 50.0), (100.0, 90.0)
+    box = np.array([(80.0, 30.0), (120.0, 150.0)])
+    assert Detection(0.5, box, joints).window == (25, 15, 150, 0.0)
+    joints[[5, 6]] = (140.0, 90.0)  # the head to the right
+    assert Detection(0.5, box, joints).window.turn_deg == pytest.approx(90.0)
+
+
+def test_boxes_overlap_by_their_common_share() -> None:
+    box = np.array([(0.0, 0.0), (4.0, 2.0)])
+    assert overlap(box, box) == 1.0
+    assert overlap(box, box + np.array([2.0, 0.0])) == pytest.approx(1 / 3)
+    assert overlap(box, box + np.array([4.0, 0.0])) == 0.0
+    assert overlap(box * 0.0, box * 0.0) == 0.0
