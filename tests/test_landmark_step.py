@@ -12,6 +12,7 @@ from common.body.body import JOINT_NAMES
 from common.body.observation import Landmarks
 from common.config.settings import Settings
 from common.video.pictures import Image
+from runtime.unfinished.state_codec import packed, unpacked
 from viewer import landmark_step
 from viewer.captured_frame import CapturedFrame
 from viewer.landmark_step import State, step
@@ -116,6 +117,13 @@ def test_two_people_are_seen_and_keep_their_numbers(monkeypatch: pytest.MonkeyPa
         first, second = columns(shown)
         assert first == pytest.approx(column(standing(60.0 + 2 * at)), abs=1)
         assert second == pytest.approx(column(standing(250.0 - 2 * at)), abs=1)
+
+
+def test_what_is_known_of_people_is_saved_and_read_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = Scene(monkeypatch, standing(60.0), standing(250.0))
+    state, _ = scene.step(State(), 0.0)
+    assert len(state.people.tracks) == 2
+    assert unpacked(packed(state), State) == state
 
 
 def test_while_the_followed_person_is_out_of_sight_no_other_takes_the_place(

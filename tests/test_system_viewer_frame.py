@@ -299,7 +299,7 @@ def test_who_is_nobody_starts_the_search_anew() -> None:
     state = track.init(setup(PAPER), room())
     state = state._replace(search=state.search._replace(found="before"))  # type: ignore[arg-type]
     nobody = Seen(np.zeros((HIGH, WIDE), np.bool_), None, 0, 0, cut=False)
-    report = track._view_of(2, frame(), nobody, None)
+    report = track._view_of(2, frame(), nobody, ())
     found, told = track.describe(state, report, nobody.mask, None)
     assert found.search.found is None
     assert told is report
