@@ -66,8 +66,8 @@ def refuse_unfollowed(clips: Mapping[str, Facts]) -> None:
         found = "nobody was found" if shares[worst] is None else f"{poor[worst]:.0%}"
         raise Unfollowed(
             f"in {len(poor)} of {counted(len(clips), 'clip')} the body is believed in less than "
-            f"half of the frames ({worst}: {found}): name an empty picture of the room, "
-            "or light it better"
+            f"half of the frames ({worst}: {found}): do what the warnings say, name an empty "
+            "picture of the room, or light it better"
         )
 
 

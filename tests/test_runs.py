@@ -133,10 +133,27 @@ def test_every_word_that_a_body_may_hold_fits_its_array() -> None:
 def test_only_what_the_views_bear_out_counts_as_believed() -> None:
     """Of the eight frames with a person four have a pose that is borne out."""
     often = {"empty": 5, "measuring": 1, "tracking": 3, "predicted": 2, "lost": 2}
-    bodies = [body(0, status=status) for status, count in often.items() for _ in range(count)]
+    bodies = [
+        body(0, status=status, confidence=(0.6,) * 15)
+        for status, count in often.items()
+        for _ in range(count)
+    ]
     assert believed(bodies) == summary_of(bodies, Settings(), {})["believed"] == 0.5
     assert believed([body(0, status="predicted")]) == 0.0
     assert believed([body(0)]) is None
+
+
+@pytest.mark.parametrize(
+    ("confidence", "share"),
+    [((0.5,) * 15, 1.0), ((0.25,) * 15, 0.5), ((0.9,) * 5 + (0.0,) * 10, 0.6), ((), 0.0)],
+)
+def test_a_frame_counts_less_where_joints_are_more_likely_wrong_than_right(
+    confidence: tuple[float, ...], share: float
+) -> None:
+    doubtful = body(0, status="tracking", confidence=confidence)
+    assert believed([doubtful]) == summary_of([doubtful], Settings(), {})["believed"] == share
+    sure = body(0, status="tracking", confidence=(0.9,) * 15)
+    assert believed([doubtful, sure]) == (1.0 + share) / 2.0
 
 
 def test_a_run_of_three_cameras_has_entries_of_each_by_name() -> None:

@@ -26,6 +26,9 @@ VERSIONS_OF: Final = ("tritrack", "numpy", "opencv-python-headless", "numba", "e
 BELIEVED: Final[tuple[Status, ...]] = ("measuring", "tracking")
 """Statuses of a believed body: the views confirm it. A predicted body was confirmed a moment
 ago: it has a pose, with confidence 0."""
+CONFIDENT: Final = 0.5
+"""Mean confidence of a body's joints below which its frame counts less as believed: the joints
+are then more likely wrong than right."""
 
 NO_PERSON_SEEN: Final = (
     "nobody was seen: the person must move, and be a sixth of the picture high at least"
@@ -128,13 +131,25 @@ def _row_of(posture: Posture) -> Facts:
 
 
 def believed(bodies: Iterable[Body]) -> float | None:
-    """Share of the frames with a person in which the body is believed; None without a person."""
-    return _believed(Counter(body.status for body in bodies))
+    """Share of the frames with a person in which the body is believed; None without a person.
+
+    A frame counts less where the joints' mean confidence is below CONFIDENT.
+    """
+    belief, seen = 0.0, 0
+    for body in bodies:
+        belief, seen = belief + _belief(body), seen + (body.status != "empty")
+    return _share(belief, seen)
 
 
-def _believed(often: Counter[Status]) -> float | None:
-    seen = often.total() - often["empty"]
-    return round(sum(often[status] for status in BELIEVED) / seen, 4) if seen else None
+def _belief(body: Body) -> float:
+    """How much a frame counts as believed, in [0, 1]."""
+    if body.status not in BELIEVED:
+        return 0.0
+    return min(1.0, sum(body.confidence) / max(len(body.confidence), 1) / CONFIDENT)
+
+
+def _share(belief: float, seen: int) -> float | None:
+    return round(belief / seen, 4) if seen else None
 
 
 def summary_of(bodies: Iterable[Body], settings: Settings, facts: Facts) -> Facts:
@@ -142,15 +157,17 @@ def summary_of(bodies: Iterable[Body], settings: Settings, facts: Facts) -> Fact
     often: Counter[Status] = Counter()
     matches: list[int] = []
     last: Body | None = None
+    belief = 0.0
     for last in bodies:
         often[last.status] += 1
+        belief += _belief(last)
         if last.joints_m:
             matches.append(last.matches)
     return {
         "frames": often.total(),
         "frames_with_pose": len(matches),
         "status": {status: often[status] for status in get_args(Status)},
-        "believed": _believed(often),
+        "believed": _share(belief, often.total() - often["empty"]),
         "matches_a_frame": round(float(np.mean(matches)), 1) if matches else 0.0,
         **facts,
         "bdp_m": None if last is None else msgspec.to_builtins(last.bdp),
