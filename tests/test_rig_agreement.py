@@ -282,7 +282,7 @@ def test_sight_lines_miss_by_what_lies_across_both_and_meet_half_way() -> None:
     across = np.cross(one, other)
     across /= np.linalg.norm(across, axis=1, keepdims=True)
     half_m = np.array([[0.04], [-0.025]]) * across
-    gaps_m, places_m = rig_agreement._met(
+    gaps_m, places_m = rig_agreement.meetings(
         RIG.cameras, project(first, middle - half_m), project(second, middle + half_m)
     )
     assert gaps_m == pytest.approx([0.08, -0.05], rel=1e-3)
@@ -298,7 +298,7 @@ def test_lines_that_are_nearly_one_miss_by_no_more_than_narrow_ones() -> None:
     other = raised[0] - centre(beside)
     one, other = one / np.linalg.norm(one), other / np.linalg.norm(other)
     shown_px = project(first, point), project(beside, raised)
-    gaps_m, _ = rig_agreement._met((first, beside), *shown_px)
+    gaps_m, _ = rig_agreement.meetings((first, beside), *shown_px)
     base = centre(beside) - centre(first)
     assert gaps_m[0] == pytest.approx(np.cross(one, other) @ base / math.sqrt(0.05))
 
@@ -387,7 +387,7 @@ def test_an_instant_counts_if_it_is_late_enough_and_both_views_are_sure_of_a_who
 def test_a_sample_is_points_then_joints_then_the_ankle() -> None:
     one, other = shown(1), shown(2)
     sample, turned_deg = rig_agreement._sample(RIG, one, other)
-    points = rig_agreement._met(
+    points = rig_agreement.meetings(
         RIG.cameras, rig_agreement._points(one), rig_agreement._points(other)
     )[0]
     assert sample[:6] == pytest.approx(points)

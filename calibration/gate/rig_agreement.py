@@ -153,7 +153,7 @@ def _is_sure(person: Observation) -> bool:
 def _sample(rig: Rig, first: Landmarks, second: Landmarks) -> tuple[Vector, tuple[float, ...]]:
     """(points + 15 + 1,) of an instant, and the facings' difference where both are sure."""
     cameras = rig.cameras
-    gaps_m, places_m = _met(cameras, _points(first), _points(second))
+    gaps_m, places_m = meetings(cameras, _points(first), _points(second))
     lower_m = _lower_ankle_m(cameras, first, second)
     sample = np.array([*gaps_m, *joint_gaps_m(cameras, first, second, SURE_JOINT), lower_m])
     return sample, _turned(cameras, (first, second), places_m[0])
@@ -163,12 +163,12 @@ def _lower_ankle_m(cameras: tuple[Camera, ...], first: Landmarks, second: Landma
     """Height of the lower ankle, with a view's sides exchanged where sight lines then meet
     better."""
     one, other = (np.array(each.joints_px)[_ANKLES] for each in (first, second))
-    tried = [_met(cameras, one, given) for given in (other, other[::-1])]
+    tried = [meetings(cameras, one, given) for given in (other, other[::-1])]
     _, places_m = min(tried, key=lambda met: float(np.abs(met[0]).sum()))
     return float(places_m[:, 1].min())
 
 
-def _met(
+def meetings(
     cameras: tuple[Camera, ...], one_px: NDArray[np.float64], other_px: NDArray[np.float64]
 ) -> tuple[Vector, NDArray[np.float64]]:
     """Gaps (n,) between the sight lines of points (n, 2), and the points nearest to both."""
@@ -199,7 +199,7 @@ def joint_gaps_m(
     tried = []
     for order in (slice(None), OTHER_SIDE):
         sure = np.minimum(first.confidence, np.array(second.confidence)[order]) >= least
-        tried.append(np.where(sure, _met(cameras, one, other[order])[0], np.nan))
+        tried.append(np.where(sure, meetings(cameras, one, other[order])[0], np.nan))
     as_is, exchanged = tried
     both = np.isfinite(as_is) & np.isfinite(exchanged)
     is_better = np.abs(exchanged[both]).sum() < np.abs(as_is[both]).sum()

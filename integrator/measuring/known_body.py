@@ -48,6 +48,8 @@ class Unmeasured(Phase, frozen=True, tag=True):
     """The instants to whose silhouettes the prior was fitted; empty where it was not."""
     unsampled: int = 0
     """Frames since the last of them."""
+    statures_m: tuple[float, ...] = ()
+    """The person's stature by the landmarks of the last instants."""
 
     @property
     def under_way(self) -> bool:
@@ -67,6 +69,8 @@ class Measured(Phase, frozen=True, tag=True):
     samples: tuple[Sample, ...] = ()
     """As in `Unmeasured`, since it was measured."""
     unsampled: int = 0
+    statures_m: tuple[float, ...] = ()
+    """As in `Unmeasured`, since it was measured."""
 
     @property
     def under_way(self) -> bool:
