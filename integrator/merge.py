@@ -18,17 +18,17 @@ from integrator.fit import proposed_pose, shape_fit
 from integrator.fit.proposed_pose import ProposedPose
 from integrator.frame_numbers import NO_FRAME, frame_at
 from integrator.measuring import landmark_stature, opening_posture
-from integrator.measuring.known_body import Known, Unmeasured
+from integrator.measuring.known_body import Known, Unknown, Unmeasured
 from integrator.merge_state import State
 from integrator.paper import fused_pose
 from integrator.person import Following, Posed, Sighting, Waiting
 from integrator.pose import joint_limits, smoothing
-from integrator.rig import one_person
+from integrator.rig import same_person
 from integrator.rig.assumed_rig import assumed_rig
 from integrator.rig.best_pair import Places, best_pair, two_of
 from integrator.rig.body_position import facing_of
 from integrator.rig.tilted_camera import assumed_rig_of_one
-from integrator.rig.undistortion import undistorted_rig
+from integrator.rig.undistortion import undistorted_instant, undistorted_rig
 from integrator.single import single_view
 from integrator.single.sight import Annotations, Sight
 
@@ -48,7 +48,7 @@ def step(
         annotations: The user's inputs for the frame, where one view is alone.
     """
     state, dt_s = _at(state, instant)
-    state, instant, shown = one_person.step(state, instant)
+    state, instant, shown = _of_person(state, instant)
     state = state._replace(
         stands=moved_cameras.step(state.stands, instant),
         motion=silhouette_motion.step(state.motion, instant),
@@ -62,6 +62,37 @@ def step(
     pair = best_pair(state.pair, rig, seen)
     now = Sighting(instant, state.rig, rig, seen, pair, dt_s, annotations)
     return _followed(_with_agreement(_with_pair(state, pair), now), now)
+
+
+def _of_person(state: State, instant: Instant) -> tuple[State, Instant, Instant]:
+    """The instant with the same person in all views, as it is and without distortion.
+
+    An assumed rig does not tell people apart.
+    """
+    shown = undistorted_instant(state.rig, instant)
+    if state.rig is None or state.scale_source == "assumed":
+        return state, instant, shown
+    lasting = belief.lost_frames(state.period_s)
+    expected = same_person.Expected(state.person.believed_m, lasting)
+    same = same_person.step(state.same, undistorted_rig(state.rig), shown, expected)
+    if same.is_apart and not state.same.is_apart:
+        state = _without_another(state, lasting)
+    own = same.chosen
+    return (
+        state._replace(same=same),
+        same_person.of_person(instant, own),
+        same_person.of_person(shown, own),
+    )
+
+
+def _without_another(state: State, lasting: int) -> State:
+    """The state without what came of two people: agreement, pose, and a body that is a prior of
+    both, where their views have not shown one person before."""
+    body = state.person.body
+    if isinstance(body, Unmeasured) and state.same.met < lasting:
+        body = Unknown()
+    person = Waiting(body, state.person.ever_confirmed)
+    return state._replace(agreement=rig_agreement.State(), person=person)
 
 
 def _followed(state: State, now: Sighting) -> tuple[State, Body, Guide]:

@@ -77,6 +77,10 @@ class Waiting(Phase, frozen=True, tag=True):
     def pose(self) -> None:
         """No pose."""
 
+    @property
+    def believed_m(self) -> None:
+        """No place."""
+
 
 class Following(Phase, frozen=True, tag=True):
     """A person who is followed, in the state of the last instant."""
@@ -93,6 +97,11 @@ class Following(Phase, frozen=True, tag=True):
     def pose(self) -> Vector:
         """(25,) the pose of the last instant."""
         return self.found.pose
+
+    @property
+    def believed_m(self) -> Vector | None:
+        """Place of the person, (3,) world; None while they are not believed."""
+        return None if self.doubted else self.pose[:3]
 
     def places_m(self, pose: Vector) -> NDArray[np.float64]:
         """The joints (15, 3) of the last instant, world: as found, or else from a pose."""

@@ -43,7 +43,7 @@ from integrator.frame_numbers import NO_FRAME, FrameTimes
 from integrator.measuring.known_body import Measured, Unknown, Unmeasured
 from integrator.person import Following, Posed, Sighting, Waiting
 from integrator.pose import smoothing
-from integrator.rig import one_person, same_person
+from integrator.rig import same_person
 from integrator.rig.body_position import scales_at
 
 LOST = round(15 * LOST_S)
@@ -551,7 +551,7 @@ def test_what_came_of_two_people_is_forgotten_and_a_body_that_was_seen_before_is
         state = merge_state.init(RIG, PERIOD_S, Settings(), DEFAULT)._replace(
             person=person, same=same_person.State(pairs=(pair,))
         )
-        assert one_person._without_another(state, LOST).person == Waiting(body, ever_confirmed=True)
+        assert merge._without_another(state, LOST).person == Waiting(body, ever_confirmed=True)
 
 
 def test_an_assumed_rig_tells_no_people_apart() -> None:
