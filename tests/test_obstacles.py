@@ -145,6 +145,9 @@ def test_a_box_is_between_the_hands_or_on_the_floor() -> None:
         rows.append(np.flatnonzero(covered.any(axis=1)))
     stands = np.array([one.max() > 105 for one in rows])
     assert 0.25 < stands.mean() < 0.75
+    assert [one.max() for one, low in zip(rows, stands, strict=True) if low] == pytest.approx(
+        np.full(stands.sum(), standing().floor()), abs=1.0
+    )
     held = [one.mean() for one, low in zip(rows, stands, strict=True) if not low]
     assert np.mean(held) == pytest.approx(60.0, abs=6.0)
 
