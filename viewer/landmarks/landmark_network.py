@@ -76,7 +76,6 @@ def find(planes: Planes, network: Path = SHIPPED, twice: bool = False) -> Found:
     )
 
 
-@compiled
 def _peaks(maps: Floats | NDArray[np.float32]) -> tuple[Floats, Floats]:
     """Where each map of logits (15, CELLS, CELLS) is highest, and next to that, (15, 2, 2), and
     its shares about there, (15, 2).
@@ -84,30 +83,32 @@ def _peaks(maps: Floats | NDArray[np.float32]) -> tuple[Floats, Floats]:
     Between cells a peak is that of the bell through the three sums of cells about the highest:
     maps are taught to be bells, and a mean over few cells would lean to the middle one.
     """
+    flat = maps.reshape(len(maps), -1)
+    highest = flat.argmax(axis=1)
+    below = flat - flat[np.arange(len(flat)), highest, None]
+    shares = np.where(below >= -DEEP, np.exp(below), 0.0).astype(np.float64)
     joints, about = np.empty((len(maps), 2, 2)), np.empty((len(maps), 2))
-    shares = np.empty((CELLS, CELLS))
-    for j in range(len(maps)):
-        best, total = maps[j].max(), 0.0
-        for i in range(CELLS):
-            for k in range(CELLS):
-                below = maps[j, i, k] - best
-                shares[i, k] = np.exp(below) if below >= -DEEP else 0.0
-                total += shares[i, k]
-        row, column = _highest(shares, -CELLS, -CELLS)
-        about[j, 0] = _peak(shares, row, column, joints[j, 0]) / total
-        row, column = _highest(shares, row, column)
-        about[j, 1] = _peak(shares, row, column, joints[j, 1]) / total
-    return joints, about
+    _fill_peaks(shares.reshape(maps.shape), highest, joints, about)
+    return joints, about / shares.sum(axis=1, keepdims=True)
 
 
 @compiled
-def _highest(shares: Floats, row: int, column: int) -> tuple[int, int]:
+def _fill_peaks(shares: Floats, highest: NDArray[np.int64], joints: Floats, about: Floats) -> None:
+    for j in range(len(shares)):
+        row, column = divmod(highest[j], CELLS)
+        about[j, 0] = _peak(shares[j], row, column, joints[j, 0])
+        row, column = _highest_apart(shares[j], row, column)
+        about[j, 1] = _peak(shares[j], row, column, joints[j, 1])
+
+
+@compiled
+def _highest_apart(shares: Floats, row: int, column: int) -> tuple[int, int]:
     """The cell with the largest share of those that are APART from another."""
     best, at = -1.0, (0, 0)
     for i in range(CELLS):
+        is_row_apart = abs(i - row) > APART
         for k in range(CELLS):
-            is_apart = abs(i - row) > APART or abs(k - column) > APART
-            if is_apart and shares[i, k] > best:
+            if shares[i, k] > best and (is_row_apart or abs(k - column) > APART):
                 best, at = shares[i, k], (i, k)
     return at
 
