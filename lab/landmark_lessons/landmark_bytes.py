@@ -6,7 +6,7 @@ What lies between no two layers in bytes stays whole too: rounding there costs t
 """
 
 import tempfile
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Final
 
@@ -63,11 +63,12 @@ def write_in_bytes(
 
     Args:
         source: What `write_network` wrote.
-        windows: (1, PLANES, SIDE, SIDE) each, of any people; the ranges of activations are theirs.
+        windows: (1, PLANES, SIDE, SIDE) each, of any people; the ranges of activations are theirs,
+            turned by each quarter: the viewer looks at people upside down too.
         out: The file to write.
         whole: Names of parts that stay as they are.
     """
-    as_bytes(source, ({"planes": each} for each in windows), out, whole)
+    as_bytes(source, ({"planes": each} for each in _all_ways_up(windows)), out, whole)
 
 
 def as_bytes(source: Path, inputs: Iterable[Inputs], out: Path, whole: Collection[str]) -> None:
@@ -96,6 +97,12 @@ def as_bytes(source: Path, inputs: Iterable[Inputs], out: Path, whole: Collectio
             weight_type=QuantType.QInt8,
             nodes_to_exclude=left,
         )
+
+
+def _all_ways_up(windows: Iterable[Planes]) -> Iterator[Planes]:
+    for planes in windows:
+        for quarters in range(4):
+            yield np.ascontiguousarray(np.rot90(planes, quarters, axes=(2, 3)))
 
 
 def _kept_whole(graph: GraphProto, whole: tuple[str, ...]) -> list[str]:
