@@ -108,6 +108,17 @@ def test_without_a_person_the_whole_picture_is_searched_four_times_a_second(
     assert scene.searches == pytest.approx([0.0, 0.25, 0.5, 0.75, 1.0])
 
 
+def test_while_another_person_is_out_of_sight_the_whole_picture_is_searched_oftener(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    scene, state = Scene(monkeypatch, standing(60.0), standing(250.0)), State()
+    state, _ = scene.step(state, 0.0)
+    del scene.people[1]
+    for at in range(1, 6):
+        state, _ = scene.step(state, at / 8)
+    assert scene.searches == pytest.approx([0.0, 0.25, 0.5])
+
+
 def test_two_people_are_seen_and_keep_their_numbers(monkeypatch: pytest.MonkeyPatch) -> None:
     scene, state = Scene(monkeypatch, standing(60.0), standing(250.0)), State()
     for at in range(20):

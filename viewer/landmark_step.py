@@ -4,6 +4,9 @@ import math
 from operator import itemgetter
 from typing import Final, NamedTuple
 
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+
 from common.body.observation import Landmarks, Pixel
 from common.config.settings import Settings
 from common.video.pictures import Image
@@ -28,7 +31,7 @@ SEARCH_S: Final = 0.5
 """Time between two searches of the whole picture for people, in seconds, beside the looks at known
 people."""
 URGENT_S: Final = 0.25
-"""The same where the followed person is not known, or not surely seen."""
+"""The same where the followed person is not surely seen, or another known one is out of sight."""
 WHOLE: Final = 0.05
 """By how much a look is surer than that in the window where the person is detected, to be kept:
 its own window may hold a part of them."""
@@ -83,7 +86,7 @@ def step(
     model = LandmarkModel(network_of(settings.landmarks), alone and not frame.hurried)
     looks, new = _looks(frame.picture, seen, people, model), list[LandmarkResult]()
     searched_s, followed = state.searched_s, looks[people.followed]
-    if not frame.hurried and frame.captured_s >= searched_s + _interval_s(followed):
+    if not frame.hurried and frame.captured_s >= searched_s + _interval_s(people, followed):
         searched_s = frame.captured_s
         looks, new = _searched(frame.picture, looks, people, model)
     after, shown = _identified(people, frame.captured_s, looks, new)
@@ -114,22 +117,34 @@ def _searched(
 ) -> tuple[dict[int, LandmarkResult], list[LandmarkResult]]:
     """The looks, taken again where a person is detected elsewhere than in the window, and the looks
     at people who are detected and not known."""
-    places = {track.number: track.landmarks for track in people.tracks}
-    places |= {n: each.landmarks for n, each in looks.items() if is_person(each.landmarks)}
-    looks, new = dict(looks), list[Detection]()
-    for detection in people_in(picture):
-        number = _person_at(detection, places)
-        if number is None:
-            new.append(detection)
-            continue
-        places.pop(number)
-        if not _is_sure_at(looks.get(number), detection.window):
-            own = model if number == people.followed else _once(model)
+    detected = people_in(picture)
+    owners = _owners(detected, people, looks[people.followed])
+    looks, new = dict(looks), list[LandmarkResult]()
+    for detection, number in zip(detected, owners, strict=True):
+        own = model if number in {None, people.followed} else _once(model)
+        if number is None and len(new) < PEOPLE:
+            new.append(look_in(picture, detection.window, own))
+        elif number is not None and not _is_sure_at(looks.get(number), detection.window):
             again = look_in(picture, detection.window, own)
-            look = looks.get(number, again)
-            looks[number] = look if look.surety > again.surety + WHOLE else again
-    own = model if people.person is None else _once(model)
-    return looks, [look_in(picture, each.window, own) for each in new[:PEOPLE]]
+            looks[number] = _better(looks.get(number, again), again, detection)
+    return looks, new
+
+
+def _owners(
+    detected: list[Detection], people: People, followed: LandmarkResult
+) -> list[int | None]:
+    """Whom each detection shows, by where the known people were last; None: no one known."""
+    places = {track.number: corners_of(track.landmarks) for track in people.tracks}
+    if not places and is_person(followed.landmarks):
+        places = {people.followed: corners_of(followed.landmarks)}
+    shares = np.array(
+        [[overlap(each.corners_px, place) for place in places.values()] for each in detected]
+    ).reshape(len(detected), len(places))
+    owners: list[int | None] = [None] * len(detected)
+    for row, column in zip(*linear_sum_assignment(shares, maximize=True), strict=True):
+        if shares[row, column] >= IS_OF:
+            owners[row] = list(places)[column]
+    return owners
 
 
 def _is_sure_at(look: LandmarkResult | None, window: Window) -> bool:
@@ -139,14 +154,13 @@ def _is_sure_at(look: LandmarkResult | None, window: Window) -> bool:
     return same_place(look.person.window, window)
 
 
-def _person_at(detection: Detection, places: dict[int, Landmarks]) -> int | None:
-    """The known person whom a detection shows; None: no one."""
-    shared = {
-        number: overlap(detection.corners_px, corners_of(landmarks))
-        for number, landmarks in places.items()
-    }
-    best = max(shared, key=shared.__getitem__, default=None)
-    return best if best is not None and shared[best] >= IS_OF else None
+def _better(look: LandmarkResult, again: LandmarkResult, detection: Detection) -> LandmarkResult:
+    """A look, or that at the detection where it is about as sure, or the first shows another."""
+    if again.landmarks is None or look.landmarks is None:
+        return look if again.landmarks is None else again
+    if overlap(corners_of(look.landmarks), detection.corners_px) < IS_OF:
+        return again
+    return look if look.surety > again.surety + WHOLE else again
 
 
 def _identified(
@@ -170,9 +184,10 @@ def _shown(people: People, shown: dict[int, LandmarkResult]) -> Shown:
     return Shown(followed, people.followed, tuple(sorted(shown.items(), key=NUMBER)))
 
 
-def _interval_s(result: LandmarkResult) -> float:
-    """Time from the last search of the whole picture to the next."""
-    return SEARCH_S if result.surety >= SURE else URGENT_S
+def _interval_s(people: People, followed: LandmarkResult) -> float:
+    """Time from the last search of the whole picture to the next: short where the followed person
+    is not surely seen, or any was out of sight."""
+    return SEARCH_S if people.are_seen and followed.surety >= SURE else URGENT_S
 
 
 def _once(model: LandmarkModel) -> LandmarkModel:

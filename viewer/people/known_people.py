@@ -14,8 +14,8 @@ PEOPLE: Final = 3
 GRACE_S: Final = 1.0
 """Time after which a person who is not seen is no longer known, seconds."""
 NEAR: Final = 0.15
-"""Mean distance of joints below which two looks are of one person, in the longer side of what holds
-the joints."""
+"""Median distance of joints below which two looks are of one person, in the longer side of what
+holds the joints."""
 SHARED: Final = 5
 """Looks that have fewer sure joints in common cannot be compared by them."""
 KEEPS: Final = 0.1
@@ -56,6 +56,11 @@ class People(NamedTuple):
     def person(self) -> Track | None:
         """The followed person; None where no person is known."""
         return next((track for track in self.tracks if track.number == self.followed), None)
+
+    @property
+    def are_seen(self) -> bool:
+        """Whether all were seen in the frame before."""
+        return len({track.seen_s for track in self.tracks}) <= 1
 
     @property
     def others(self) -> tuple[Track, ...]:
@@ -190,13 +195,13 @@ def _off_root(track: Track, root_px: Pixel) -> float:
 
 
 def _distance(first: Landmarks, second: Landmarks) -> float:
-    """Mean distance of the joints that both are sure of, in the larger size; of few joints that of
-    the middles."""
+    """Median distance of the joints that both are sure of, in the larger size; of few joints, that
+    of the middles."""
     sure = np.minimum(first.confidence, second.confidence) > COUNTS
     if sure.sum() < SHARED:
         return _apart(first, second)
     off_px = np.subtract(first.joints_px, second.joints_px)[sure]
-    return float(np.hypot(*off_px.T).mean()) / max(_size(first), _size(second))
+    return float(np.median(np.hypot(*off_px.T))) / max(_size(first), _size(second))
 
 
 def _apart(first: Landmarks, second: Landmarks) -> float:
