@@ -16,6 +16,7 @@ from viewer.people.known_people import (
     People,
     corners_of,
     expected_at,
+    forgotten,
     is_person,
     is_same,
     of_one,
@@ -99,6 +100,22 @@ def test_a_look_that_two_claim_is_the_nearer_ones() -> None:
     assert (column(people.person.landmarks), people.person.seen_s) == (100.0, 0.0)
 
 
+def test_a_look_that_two_claim_about_alike_is_the_followed_persons() -> None:
+    looks = [Look(0, person(153.0)), Look(1, person(152.0))]
+    assert step(known(100.0, 200.0), 0.1, looks)[1] == (0, None)
+    looks = [Look(0, person(158.0)), Look(1, person(159.0))]
+    assert step(known(100.0, 200.0), 0.1, looks)[1] == (None, 1)
+
+
+def test_after_the_followed_person_the_largest_other_is_followed() -> None:
+    people, _ = step(known(100.0), 0.1, [Look(0, person(100.0)), Look(None, person(200.0))])
+    looks = [Look(0, person(100.0)), Look(1, person(200.0)), Look(None, person(300.0, tall=1.4))]
+    people, _ = step(people, 0.2, looks)
+    looks = [Look(1, person(200.0)), Look(2, person(300.0, tall=1.4))]
+    people, _ = step(people, 1.3, looks)
+    assert (people.followed, numbers(people)) == (2, [1, 2])
+
+
 def test_a_followed_person_out_of_sight_is_waited_for_and_then_another_is_followed() -> None:
     people = known(100.0, 200.0)
     for at_s in (0.3, 0.6, 0.9):
@@ -114,6 +131,8 @@ def test_a_number_is_never_used_again() -> None:
     assert (people.tracks, people.followed) == ((), 1)
     people, given_ = step(people, GRACE_S + 0.2, [Look(None, person(100.0))])
     assert given_ == (1,)
+    assert forgotten(people) == People((), 2, 3)
+    assert forgotten(People()) == People()
     again, _ = step(People(), 5.0, [])
     assert again == People(), "a viewer that has known no person yet begins with 0"
 

@@ -27,7 +27,7 @@ def text(value: str) -> dict[str, str]:
 
 
 def layer(
-    name: str, kind: str, taken: list[str], fused: list[str], down: int = 1
+    name: str, kind: str, taken: list[str], fused: tuple[str, ...] = (), down: int = 1
 ) -> dict[str, Any]:
     names = {"list": {"s": [text(each)["s"] for each in fused]}}
     strides = {"list": {"i": ["1", str(down), str(down), "1"]}}
@@ -50,7 +50,7 @@ def published(tmp_path: Path) -> tuple[Path, dict[str, np.ndarray]]:
             "a/Conv1_relu/Relu6",
             "_FusedConv2D",
             ["in", "stem/w", "stem/b"],
-            ["BiasAdd", "Relu6"],
+            ("BiasAdd", "Relu6"),
             2,
         ),
         layer("apart", "DepthwiseConv2dNative", [STEM, "apart/w"]),

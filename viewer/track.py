@@ -24,7 +24,7 @@ from viewer.expected_body import expected_body
 from viewer.landmarks.person_mask import LandmarkResult, Shown
 from viewer.paper import pose_search
 from viewer.paper.measure import opening_measure
-from viewer.people.known_people import of_one
+from viewer.people.known_people import forgotten, of_one
 from viewer.people.observed_people import observed
 from viewer.room.silhouette_correction import corrected, is_trusted
 from viewer.silhouette import silhouette
@@ -246,7 +246,7 @@ def _followed(state: State, frame: CapturedFrame) -> State:
     return state._replace(
         moved=moved,
         silhouette=silhouette.before(state.silhouette, background),
-        landmarks=landmark_step.State(),
+        landmarks=landmark_step.State(forgotten(state.landmarks.people)),
         near_px=None,
     )
 

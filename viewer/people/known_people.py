@@ -91,6 +91,11 @@ def last(people: People) -> Landmarks | None:
     return None if people.person is None else people.person.landmarks
 
 
+def forgotten(people: People) -> People:
+    """No person is known any more; numbers go on."""
+    return People((), people.fresh, people.fresh + 1) if people.tracks else people
+
+
 def step(
     people: People, at_s: float, looks: Sequence[Look]
 ) -> tuple[People, tuple[int | None, ...]]:
