@@ -6,11 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import OTHER_SIDE
-from common.body.observation import Landmarks
+from common.body.observation import Landmarks, Observation
+from common.body.proportions import stature
 from common.bus.instant import Seen
 from common.bus.messages import Status
 from common.rig.camera import Camera, Rig, project
 from integrator.person import Following, Sighting
+from integrator.pose.possible_pose import has_possible_limbs, is_within_a_jump
 from integrator.single.reflection import yaw_deg
 
 LOST_SCORE: Final = 0.35
@@ -37,13 +39,22 @@ UNTRUSTED_SCORE: Final = 0.45
 """Smallest S in each view where no view's landmarks are trusted: it is 0.6 in 99 % of two
 performers' frames (docs/measurements.md)."""
 
+NOWHERE: Final = 0.1
+"""S in a view below which its silhouette is of something else than the body, unless its landmarks
+are the body's: it is 0.5 at least in all frames of four performers (docs/measurements.md)."""
+
 LOST_S: Final = 1.0 / 3.0
 """Duration without belief, seconds, after which the body is lost: five frames at 15 Hz. Until
 then it is predicted: it has a pose, with confidence 0."""
 
 
 def weighed(
-    person: Following, now: Sighting, scores: tuple[float, ...], period_s: float
+    person: Following,
+    now: Sighting,
+    scores: tuple[float, ...],
+    period_s: float,
+    *,
+    on_floor: bool = True,
 ) -> Following:
     """The person with the duration of disbelief; a body lost in both views is forgotten.
 
@@ -57,10 +68,14 @@ def weighed(
         now: The views of the instant.
         scores: S of the pose in each view.
         period_s: Time between frames.
+        on_floor: The rig's floor is known: a body that no jump lifts so high is not believed.
     """
     found, placed = person.found, now.annotations.joints_px
     places_m, detections = person.places_m(found.pose), now.instant.detections
-    if placed or is_believed(places_m, now.filed_rig, detections, scores):
+    if placed or (
+        is_possible(person, now, on_floor=on_floor)
+        and is_believed(places_m, now.filed_rig, detections, scores)
+    ):
         return person._replace(doubted=0, ever_confirmed=True)
     lost = lost_frames(period_s)
     least = lost if found.alone is not None and not person.ever_confirmed else 1
@@ -68,6 +83,24 @@ def weighed(
     if person.doubted % lost or found.alone is not None:
         return person
     return person._replace(found=found._replace(memory=None))
+
+
+def is_possible(person: Following, now: Sighting, *, on_floor: bool) -> bool:
+    """Whether a body can take the pose; who stands high up on something is shown there by the
+    landmarks of two views."""
+    places_m = person.places_m(person.found.pose)
+    if not has_possible_limbs(places_m, stature(person.body.bdp)):
+        return False
+    if not on_floor or is_within_a_jump(places_m):
+        return True
+    views = zip(now.instant.detections, now.filed_rig.cameras, strict=True)
+    return sum(_is_near(places_m, camera, seen) for seen, camera in views) > 1
+
+
+def _is_near(joints_m: NDArray[np.float64], camera: Camera, seen: Observation | None) -> bool:
+    """Whether a view's landmarks are trusted and stand where a body does."""
+    shown = None if seen is None else seen.landmarks
+    return shown is not None and _is_trusted(shown) and _astray(joints_m, camera, shown) <= ASTRAY
 
 
 def status_of(person: Following, period_s: float) -> Status:
@@ -107,6 +140,11 @@ def is_believed(
         if person.landmarks is not None and _is_trusted(person.landmarks)
     ]
     if max(scores) < LOST_SCORE and len(told) < 2:
+        return False
+    if any(
+        score < NOWHERE and not _is_near(joints_m, camera, person)
+        for person, camera, score in views
+    ):
         return False
     if told:
         near = sum(_astray(joints_m, camera, shown) <= ASTRAY for shown, camera in told)

@@ -106,7 +106,8 @@ def _followed(state: State, now: Sighting) -> tuple[State, Body, Guide]:
         body = shape_fit.step(body, *now.two, found.pose)
     person = _following(state, body, found)
     scores = _scores(person, now)
-    person = belief.weighed(person, now, scores, state.period_s)
+    has_floor = state.scale_source != "assumed"
+    person = belief.weighed(person, now, scores, state.period_s, on_floor=has_floor)
     person, angles = _smoothed(person, method, now.dt_s)
     state = state._replace(person=person, facing=found.facing)
     told = outgoing.body_of(state, person, now, angles, scores)
@@ -116,8 +117,10 @@ def _followed(state: State, now: Sighting) -> tuple[State, Body, Guide]:
 def _sized(state: State, body: Known, now: Sighting) -> tuple[State, Known]:
     """The body in the size that landmarks show; the pose of a body of another size is forgotten."""
     sized = landmark_stature.step(body, *now.two)
-    if sized.bdp != body.bdp:
-        state = state._replace(person=Waiting(sized, state.person.ever_confirmed))
+    person = state.person
+    if sized.bdp != body.bdp and isinstance(person, Following):
+        found = person.found._replace(memory=None, landmarks=None, alone=None)
+        state = state._replace(person=person._replace(found=found))
     return state, sized
 
 

@@ -3,14 +3,27 @@
 import msgspec
 import numpy as np
 import pytest
-from staging import RIG, standing
+from staging import PERIOD_S, RIG, standing
 
+from common.body.body import Vector
 from common.body.kinematics import joints
 from common.body.observation import Box, Landmarks, Observation
 from common.body.proportions import body_vector, thesis_bdp
-from common.bus.instant import TwoSeen
+from common.bus.instant import Instant, TwoSeen
+from common.bus.messages import View
 from common.rig.camera import project
-from integrator.belief import ASTRAY, FACES, _astray, _is_turned_about, is_believed
+from integrator.belief import (
+    ASTRAY,
+    FACES,
+    NOWHERE,
+    _astray,
+    _is_turned_about,
+    is_believed,
+    is_possible,
+)
+from integrator.measuring.known_body import Unmeasured
+from integrator.person import Following, Posed, Sighting
+from integrator.pose import smoothing
 from integrator.single.reflection import yaw_deg
 
 BODY = np.asarray(joints(body_vector(thesis_bdp(1.75)), standing()))
@@ -28,6 +41,21 @@ def report(n: int, joints_m: np.ndarray, confidence: float = 0.8) -> Observation
     )
     box = Box(left=60, right=100, top=20, bottom=110)
     return Observation(width=160, height=120, silhouette=b"", box=box, area_px=0, landmarks=seen)
+
+
+def following(pose: Vector) -> Following:
+    """A person of 1.75 m in a pose."""
+    smooth = smoothing.init(17, PERIOD_S)
+    return Following(Unmeasured(thesis_bdp(1.75)), Posed(pose, ("facade", "flank")), smooth)
+
+
+def sighting(*seen: Observation | None) -> Sighting:
+    views = [
+        View(viewer=n, frame=0, captured_s=0.0, clock_s=0.0, width=160, height=120, people=(each,))
+        for n, each in enumerate(seen, 1)
+        if each is not None
+    ]
+    return Sighting(Instant(tuple(views)), RIG, RIG, seen, (0, 1), 0.1)
 
 
 def pair(joints_m: np.ndarray, confidence: float = 0.8) -> TwoSeen:
@@ -141,3 +169,39 @@ def test_an_outline_without_landmarks_says_nothing_of_how_somebody_faces() -> No
     for confidence, is_turned in ((FACES + 0.01, True), (FACES - 0.01, False)):
         unsure = msgspec.structs.replace(second, facing_confidence=confidence)
         assert _is_turned_about(turned(), [first, (unsure, camera_2)]) == is_turned
+
+
+def test_a_body_that_is_nowhere_in_a_silhouette_is_believed_where_landmarks_show_it() -> None:
+    """A screen that lights up is taken for the person in view 2."""
+    unsure = report(0, BODY), report(1, moved(0.6, 0.0), 0.1)
+    assert is_believed(BODY, RIG, unsure, (0.7, NOWHERE + 0.01))
+    assert not is_believed(BODY, RIG, unsure, (0.7, NOWHERE - 0.01))
+    assert is_believed(BODY, RIG, pair(BODY), (0.7, 0.0))
+    assert is_believed(BODY, RIG, (report(0, BODY), None), (0.7, 0.0))
+
+
+@pytest.mark.parametrize(
+    ("on_floor", "sure", "believed"),
+    [
+        (True, 0.9, True),
+        (True, 0.1, False),
+        (False, 0.1, True),
+    ],
+)
+def test_a_body_in_the_air_is_possible_where_two_views_show_it_or_no_floor_is_known(
+    on_floor: bool, sure: float, believed: bool
+) -> None:
+    """Someone on a stage, and the ghost of a body of half the size, half way to the camera."""
+    pose = standing()
+    pose[1] += 1.2
+    up_m = BODY + np.array([0.0, 1.2, 0.0])
+    seen = report(0, up_m), report(1, up_m, sure)
+    assert is_possible(following(pose), sighting(*seen), on_floor=on_floor) == believed
+
+
+def test_a_body_on_the_floor_is_possible_and_one_with_limbs_of_a_giant_is_not() -> None:
+    now = sighting(*pair(BODY))
+    assert is_possible(following(standing()), now, on_floor=True)
+    giant = following(standing())
+    giant = giant._replace(found=giant.found._replace(joints_m=2.2 * BODY))
+    assert not is_possible(giant, now, on_floor=True)

@@ -91,3 +91,12 @@ def test_a_single_view_makes_a_body_taller_and_never_smaller() -> None:
     assert stature(after(small, FEWEST, shown(0), None).bdp) == pytest.approx(1.75, rel=0.03)
     assert after(tall, 20, shown(0), None) == tall
     assert after(tall, 20, None, None) == tall
+
+
+def test_one_view_counts_alone_where_the_other_is_unsure_and_not_where_they_contradict() -> None:
+    small = Unmeasured(thesis_bdp(1.1))
+    assert stature(after(small, FEWEST, shown(0), shown(1, sure=0.1)).bdp) == pytest.approx(
+        1.75, rel=0.03
+    )
+    far = seen(1, np.asarray(joints(body_vector(thesis_bdp(1.75)), standing((2.0, 3.0)))))
+    assert after(small, 20, shown(0), far).bdp == small.bdp

@@ -559,3 +559,34 @@ def test_an_assumed_rig_tells_no_people_apart() -> None:
     for n in range(30):
         state, *_ = merge.step(state, two_views(n, first_m(n), other_m(n)))
         assert state.same == same_person.State()
+
+
+def test_a_body_that_landmarks_contradict_is_sized_by_them_and_its_pose_begins_anew() -> None:
+    state = merge_state.init(RIG, PERIOD_S, Settings(), DEFAULT)
+    for n in range(3):
+        state, *_ = merge.step(state, two_views(n, first_m(n), first_m(n)))
+    assert isinstance(state.person, Following)
+    known = state.person.body
+    assert isinstance(known, Unmeasured)
+    small = known._replace(bdp=known.bdp.scaled(0.5), statures_m=())
+    state = state._replace(person=state.person._replace(body=small, doubted=2))
+    for n in range(3, 20):
+        state, body, _ = merge.step(state, two_views(n, first_m(n), first_m(n)))
+    assert body.bdp is not None
+    assert stature(body.bdp) == pytest.approx(1.75, rel=0.06)
+
+
+def test_a_new_size_forgets_the_pose_and_not_the_doubt() -> None:
+    state = merge_state.init(RIG, PERIOD_S, Settings(), DEFAULT)
+    for n in range(3):
+        state, *_ = merge.step(state, two_views(n, first_m(n), first_m(n)))
+    assert isinstance(state.person, Following)
+    rig, both = RIG, two_views(3, first_m(3), first_m(3))
+    now = Sighting(both, rig, rig, both.detections, (0, 1), PERIOD_S)
+    small = Unmeasured(PERSON.scaled(0.5), statures_m=(1.75,) * 10)
+    state = state._replace(person=state.person._replace(body=small, doubted=2))
+    after, sized = merge._sized(state, small, now)
+    assert stature(sized.bdp) == pytest.approx(1.75, rel=0.03)
+    assert isinstance(after.person, Following)
+    assert (after.person.found.memory, after.person.doubted) == (None, 2)
+    assert merge._sized(after, sized, now)[0] is after

@@ -66,9 +66,10 @@ def _stature_m(rig: Rig, shown: list[Landmarks | None], known_m: float) -> float
         found_m = by_segments_m(rig.cameras, first, second)
     if found_m is None:
         views = zip(shown, rig.cameras, strict=True)
-        least_m = [by_floor_m(each, camera) for each, camera in views if each is not None]
-        found_m = max((each for each in least_m if each is not None), default=0.0)
-        found_m = found_m if found_m > known_m else 0.0
+        each_m = [by_floor_m(each, camera) for each, camera in views if each is not None]
+        least_m = [each for each in each_m if each is not None]
+        alone_m = least_m[0] if len(least_m) == 1 else 0.0  # two views contradict each other
+        found_m = alone_m if alone_m > known_m else 0.0
     low, high = STATURES_M
     return found_m if low <= found_m <= high else None
 
