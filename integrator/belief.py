@@ -61,7 +61,7 @@ def weighed(
     A frame in which the user placed joints is believed. Without forgetting, the network would
     continue from its memory of a wrong body. A single view keeps its memory, which alone
     distinguishes front from back. A body that was never believed is lost at once, as nothing shows
-    that it is a person.
+    that it is a person, and so is one in a pose that no body takes.
 
     Args:
         person: Of this instant.
@@ -72,13 +72,12 @@ def weighed(
     """
     found, placed = person.found, now.annotations.joints_px
     places_m, detections = person.places_m(found.pose), now.instant.detections
-    if placed or (
-        is_possible(person, now, on_floor=on_floor)
-        and is_believed(places_m, now.filed_rig, detections, scores)
-    ):
+    possible = is_possible(person, now, on_floor=on_floor)
+    if placed or (possible and is_believed(places_m, now.filed_rig, detections, scores)):
         return person._replace(doubted=0, ever_confirmed=True)
     lost = lost_frames(period_s)
-    least = lost if found.alone is not None and not person.ever_confirmed else 1
+    is_unknown = found.alone is not None and not person.ever_confirmed
+    least = lost if is_unknown or not possible else 1
     person = person._replace(doubted=max(least, person.doubted + 1))
     if person.doubted % lost or found.alone is not None:
         return person

@@ -20,6 +20,8 @@ from integrator.belief import (
     _is_turned_about,
     is_believed,
     is_possible,
+    status_of,
+    weighed,
 )
 from integrator.measuring.known_body import Unmeasured
 from integrator.person import Following, Posed, Sighting
@@ -205,3 +207,15 @@ def test_a_body_on_the_floor_is_possible_and_one_with_limbs_of_a_giant_is_not() 
     giant = following(standing())
     giant = giant._replace(found=giant.found._replace(joints_m=2.2 * BODY))
     assert not is_possible(giant, now, on_floor=True)
+
+
+def test_a_body_in_a_pose_that_no_body_takes_is_lost_at_once_and_back_at_once() -> None:
+    now, known = sighting(*pair(BODY)), following(standing())
+    giant = known._replace(found=known.found._replace(joints_m=2.2 * BODY), ever_confirmed=True)
+    after = weighed(giant, now, FITS, PERIOD_S)
+    assert status_of(after, PERIOD_S) == "lost"
+    assert status_of(weighed(after._replace(found=known.found), now, FITS, PERIOD_S), PERIOD_S) == (
+        "tracking"
+    )
+    beside = weighed(known, sighting(*pair(moved(0.6, 0.0))), FITS, PERIOD_S)
+    assert status_of(beside, PERIOD_S) == "predicted"
