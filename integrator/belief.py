@@ -11,7 +11,7 @@ from common.body.proportions import stature
 from common.bus.instant import Seen
 from common.bus.messages import Status
 from common.rig.camera import Camera, Rig, project
-from integrator.person import Following, Sighting
+from integrator.person import Following, Person, Sighting, Waiting
 from integrator.pose.possible_pose import has_possible_limbs, is_within_a_jump
 from integrator.single.reflection import yaw_deg
 
@@ -54,6 +54,7 @@ def weighed(
     scores: tuple[float, ...],
     period_s: float,
     *,
+    before: Person = Waiting(),
     on_floor: bool = True,
 ) -> Following:
     """The person with the duration of disbelief; a body lost in both views is forgotten.
@@ -61,13 +62,15 @@ def weighed(
     A frame in which the user placed joints is believed. Without forgetting, the network would
     continue from its memory of a wrong body. A single view keeps its memory, which alone
     distinguishes front from back. A body that was never believed is lost at once, as nothing shows
-    that it is a person, and so is one in a pose that no body takes.
+    that it is a person. Instead of a pose that no body takes the one before is carried on; without
+    one the body is lost at once.
 
     Args:
         person: Of this instant.
         now: The views of the instant.
         scores: S of the pose in each view.
         period_s: Time between frames.
+        before: Of the instant before.
         on_floor: The rig's floor is known: a body that no jump lifts so high is not believed.
     """
     found, placed = person.found, now.annotations.joints_px
@@ -77,11 +80,13 @@ def weighed(
         return person._replace(doubted=0, ever_confirmed=True)
     lost = lost_frames(period_s)
     is_unknown = found.alone is not None and not person.ever_confirmed
-    least = lost if is_unknown or not possible else 1
+    if not possible and isinstance(before, Following):
+        person, possible = person._replace(found=before.found), True
+    least = 1 if possible and not is_unknown else lost
     person = person._replace(doubted=max(least, person.doubted + 1))
     if person.doubted % lost or found.alone is not None:
         return person
-    return person._replace(found=found._replace(memory=None))
+    return person._replace(found=person.found._replace(memory=None))
 
 
 def is_possible(person: Following, now: Sighting, *, on_floor: bool) -> bool:

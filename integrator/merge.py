@@ -106,8 +106,8 @@ def _followed(state: State, now: Sighting) -> tuple[State, Body, Guide]:
         body = shape_fit.step(body, *now.two, found.pose)
     person = _following(state, body, found)
     scores = _scores(person, now)
-    has_floor = state.scale_source != "assumed"
-    person = belief.weighed(person, now, scores, state.period_s, on_floor=has_floor)
+    floor, was = state.scale_source != "assumed", state.person
+    person = belief.weighed(person, now, scores, state.period_s, before=was, on_floor=floor)
     person, angles = _smoothed(person, method, now.dt_s)
     state = state._replace(person=person, facing=found.facing)
     told = outgoing.body_of(state, person, now, angles, scores)

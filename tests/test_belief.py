@@ -209,13 +209,12 @@ def test_a_body_on_the_floor_is_possible_and_one_with_limbs_of_a_giant_is_not() 
     assert not is_possible(giant, now, on_floor=True)
 
 
-def test_a_body_in_a_pose_that_no_body_takes_is_lost_at_once_and_back_at_once() -> None:
+def test_instead_of_a_pose_that_no_body_takes_the_one_before_is_carried_on() -> None:
     now, known = sighting(*pair(BODY)), following(standing())
     giant = known._replace(found=known.found._replace(joints_m=2.2 * BODY), ever_confirmed=True)
-    after = weighed(giant, now, FITS, PERIOD_S)
-    assert status_of(after, PERIOD_S) == "lost"
-    assert status_of(weighed(after._replace(found=known.found), now, FITS, PERIOD_S), PERIOD_S) == (
-        "tracking"
-    )
-    beside = weighed(known, sighting(*pair(moved(0.6, 0.0))), FITS, PERIOD_S)
-    assert status_of(beside, PERIOD_S) == "predicted"
+    after = weighed(giant, now, FITS, PERIOD_S, before=known)
+    assert (status_of(after, PERIOD_S), after.found) == ("predicted", known.found)
+    first = weighed(giant, now, FITS, PERIOD_S)
+    assert status_of(first, PERIOD_S) == "lost"
+    again = weighed(first._replace(found=known.found), now, FITS, PERIOD_S, before=first)
+    assert status_of(again, PERIOD_S) == "tracking"
