@@ -119,8 +119,9 @@ def test_different_people_are_asked_for_before_any_fault_of_the_cameras(
         "calibration.gate.sight_clash.miss_at", lambda _, at: miss if at == late_s else 0.0
     )
     monkeypatch.setattr(rig_fault, "trust_of", lambda *_: doubted())
-    said = advice_on(PAPER, SHOWN, PERIOD_S, doubted("facing", "apart"), Clock(late_s))
+    far = msgspec.structs.replace(doubted("facing", "apart"), apart_mm=300.0)
+    said = advice_on(PAPER, SHOWN, PERIOD_S, far, Clock(late_s))
     assert said.startswith("the views follow different people") == (miss == 0.7)
     assert said.startswith("the cameras are exchanged") == (miss != 0.7)
-    met = advice_on(PAPER, SHOWN, PERIOD_S, doubted("facing"), Clock(late_s))
-    assert met.startswith("the cameras are exchanged")
+    near = advice_on(PAPER, SHOWN, PERIOD_S, doubted("facing", "apart"), Clock(late_s))
+    assert near.startswith("the cameras are exchanged")

@@ -7,7 +7,7 @@ import msgspec
 import numpy as np
 
 from calibration.gate.rig_trust import Case, Trust, case_of, trust_of, with_lateness
-from calibration.gate.sight_clash import is_of_different_people
+from calibration.gate.sight_clash import CLASHES_M, is_of_different_people
 from calibration.person.rig_fit import fitted
 from calibration.person.rig_residuals import FEWEST_FACINGS, SURE_FACING
 from calibration.tracks.joint_tracks import Sighting, at_times
@@ -67,7 +67,7 @@ def advice_on(
             f"videos of two cameras; else {AGAIN}"
         )
     clock = clock or clock_of(sighting)
-    if "apart" in trust.odd and is_of_different_people(sighting, clock.late_s):
+    if trust.apart_mm > 1e3 * CLASHES_M and is_of_different_people(sighting, clock.late_s):
         return (
             "the views follow different people: they have no relation that any two cameras would "
             "have; see that both show one person, and name the videos of one take"
