@@ -71,9 +71,11 @@ class Scene:
         self.searches.append(self.at_s)
         return [detected(column(each)) for each in self.people]
 
-    def step(self, state: State, at_s: float, **more: Any) -> tuple[State, Shown]:
+    def step(
+        self, state: State, at_s: float, silhouette: Seen = EMPTY, **more: Any
+    ) -> tuple[State, Shown]:
         self.at_s = at_s
-        return step(state, frame(at_s), EMPTY, SETTINGS, alone=False, **more)
+        return step(state, frame(at_s), silhouette, SETTINGS, alone=False, **more)
 
 
 def column(landmarks: Landmarks) -> float:
@@ -106,6 +108,17 @@ def test_without_a_person_the_whole_picture_is_searched_four_times_a_second(
         state, shown = scene.step(state, at / 8)
         assert columns(shown) == [None]
     assert scene.searches == pytest.approx([0.0, 0.25, 0.5, 0.75, 1.0])
+
+
+def test_a_silhouette_of_no_known_person_has_the_whole_picture_searched_in_every_frame(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    scene, state = Scene(monkeypatch), State()
+    thing = np.zeros((240, 320), np.bool_)
+    thing[60:200, 5:50] = True
+    for at in range(4):
+        state, _ = scene.step(state, at / 8, seen(thing))
+    assert scene.searches == pytest.approx([0.0, 0.125, 0.25, 0.375])
 
 
 def test_while_another_person_is_out_of_sight_the_whole_picture_is_searched_oftener(

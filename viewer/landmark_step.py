@@ -86,7 +86,7 @@ def step(
     model = LandmarkModel(network_of(settings.landmarks), alone and not frame.hurried)
     looks, new = _looks(frame.picture, seen, people, model), list[LandmarkResult]()
     searched_s, followed = state.searched_s, looks[people.followed]
-    if not frame.hurried and frame.captured_s >= searched_s + _interval_s(people, followed):
+    if not frame.hurried and frame.captured_s >= searched_s + _interval_s(people, followed, seen):
         searched_s = frame.captured_s
         looks, new = _searched(frame.picture, looks, people, model)
     after, shown = _identified(people, frame.captured_s, looks, new)
@@ -184,9 +184,11 @@ def _shown(people: People, shown: dict[int, LandmarkResult]) -> Shown:
     return Shown(followed, people.followed, tuple(sorted(shown.items(), key=NUMBER)))
 
 
-def _interval_s(people: People, followed: LandmarkResult) -> float:
+def _interval_s(people: People, followed: LandmarkResult, seen: Seen) -> float:
     """Time from the last search of the whole picture to the next: short where the followed person
-    is not surely seen, or any was out of sight."""
+    is not surely seen, or any was out of sight; none where a silhouette is of no known person."""
+    if not people.tracks and seen.box is not None and followed.surety < SURE:
+        return 0.0
     return SEARCH_S if people.are_seen and followed.surety >= SURE else URGENT_S
 
 
