@@ -266,7 +266,10 @@ class Told:
         self.asked: list[Any] = []
         monkeypatch.setattr(lockstep, "trust_facts", self.trust)
 
-    def trust(self, clip: Clip, witness: Any, clock: Clock, *, insisted: bool) -> dict[str, Any]:
+    def trust(
+        self, clip: Clip, witness: Any, clock: Clock, *, insisted: bool, different_people: bool
+    ) -> dict[str, Any]:
+        assert not different_people
         self.asked.append((clip, witness, clock, insisted))
         return {}
 
