@@ -1,14 +1,15 @@
 """Four cameras of a gait laboratory, two at a time: what do they make of whom they film?
 
 Run: python benchmarks/pose2sim.py $TRITRACK_DATA/real/pose2sim_balancing --out DIR
-    [--landmarks $TRITRACK_DATA/real/landmarks_mediapipe.npz]
+    [--landmarks $TRITRACK_DATA/real/landmarks_mediapipe.npz] [--without-plates] [--size 640x480]
 
 Writes a calibration and settings for each pair, measures the body in the trial's T-pose, tracks the
 pair, prints in how many of the frames its status is `tracking`, which proves nothing, and writes a
 contact sheet. What no label is needed for tells how right that is: how much of the body that a pair
 has found is on the outline in the cameras that it did not look through, and how far apart the
-joints lie that two pairs have found of the same instants. With --landmarks knees are held against
-those of another tracker's joints, of all four cameras at once.
+joints lie that two pairs have found of the same instants. With --landmarks joints and knees are
+held against those of another tracker, of all four cameras at once. Without plates the body has no
+T-pose either, and the room is never seen empty.
 """
 
 import argparse
@@ -37,7 +38,7 @@ from runtime.offline.performance import Watch
 from runtime.store.runs import write_run
 from viewer.captured_frame import CapturedFrame
 
-PAIRS: Final = (("cam01", "cam04"), ("cam03", "cam04"), ("cam02", "cam03"))
+PAIRS: Final = tuple(combinations(("cam01", "cam02", "cam03", "cam04"), 2))
 Y_UP: Final = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]])
 """Their world has z up; rows: our axes in theirs."""
 BOXED: Final = (1080, 1920)
@@ -46,6 +47,8 @@ WHOLE: Final = (1088, 1920)
 BAR_PX: Final = 7
 """... so high each. Of the trial they are cam01's and cam02's, of the T-pose the other two's."""
 KNEES: Final = (("l_hip", "l_knee", "l_ankle"), ("r_hip", "r_knee", "r_ankle"))
+EXCHANGED: Final = 0.7
+"""Joints nearer to the other side's than so many of the distance to their own are exchanged."""
 SHOWN: Final = 12
 """Frames on a contact sheet."""
 
@@ -93,17 +96,23 @@ every = {every}
 
 [cameras.cam1]
 source = "{videos}{one}.mp4"
-background = "{plates}/bg_{one}.png"
+background = "{plate_one}"
 calibrated_as = "{one}"
 
 [cameras.cam2]
 source = "{videos}{two}.mp4"
-background = "{plates}/bg_{two}.png"
+background = "{plate_two}"
 calibrated_as = "{two}"
 """
 
 
-def write_settings(data: Path, out: Path, size: str, every: int) -> list[Path]:
+def settings_of(one: str, two: str, plates: Path | None, **more: Any) -> str:
+    """The settings of a pair, with the plates of a folder, if there are any."""
+    names = ("", "") if plates is None else [f"{plates}/bg_{each}.png" for each in (one, two)]
+    return SETTINGS.format(one=one, two=two, plate_one=names[0], plate_two=names[1], **more)
+
+
+def write_settings(data: Path, out: Path, size: str, every: int, *, plates: bool) -> list[Path]:
     """The settings of each pair, and beside them what they name."""
     given = json.loads((data / "cameras.json").read_text())
     for name, boxed in (("trial", ("cam01", "cam02")), ("tpose", ("cam03", "cam04"))):
@@ -115,13 +124,13 @@ def write_settings(data: Path, out: Path, size: str, every: int) -> list[Path]:
     for one, two in PAIRS:
         found.append(out / f"{one}_{two}.toml")
         opening = f"tpose_{one}_{two}.toml"
-        of_trial = {"opening": f'opening = "{opening}"', "calibration": "trial.json"}
-        of_trial |= {"videos": f"{data}/", "plates": str(data)}
-        of_tpose = {"opening": "", "calibration": "tpose.json"}
-        of_tpose |= {"videos": f"{data}/tpose/T00_", "plates": str(out.resolve())}
-        shared = {"one": one, "two": two, "size": size}
-        found[-1].write_text(SETTINGS.format(**of_trial, **shared, every=every))
-        (out / opening).write_text(SETTINGS.format(**of_tpose, **shared, every=1))
+        of_trial = {"opening": f'opening = "{opening}"' if plates else ""}
+        of_trial |= {"calibration": "trial.json", "videos": f"{data}/"}
+        of_tpose = {"opening": "", "calibration": "tpose.json", "videos": f"{data}/tpose/T00_"}
+        trial = settings_of(one, two, data if plates else None, size=size, every=every, **of_trial)
+        found[-1].write_text(trial)
+        tpose = settings_of(one, two, out.resolve(), size=size, every=1, **of_tpose)
+        (out / opening).write_text(tpose)
     return found
 
 
@@ -216,6 +225,30 @@ def landmarks_m(cameras: list[dict[str, Any]], path: Path) -> NDArray[np.float64
     return np.asarray(homogeneous[..., :3] / homogeneous[..., 3:])
 
 
+def compare_joints(found: dict[str, Pair], rig: Path, path: Path) -> None:
+    """Print how far each pair's joints are from those of a file of landmarks, and in how many
+    frames most of them are nearer to the other side's."""
+    with np.load(path, allow_pickle=False) as given:
+        names = given["joint_names"].tolist()
+    due_m = landmarks_m(json.loads(rig.read_text())["cameras"], path)
+    own_places = [JOINT_NAMES.index(name) for name in names]
+    others = [names.index({"l": "r", "r": "l"}[name[0]] + name[1:]) for name in names]
+    for leg in KNEES:
+        shank_m = np.linalg.norm(np.subtract(*(due_m[:, names.index(n)] for n in leg[1:])), axis=1)
+        print(f"landmarks: {leg[1]} to {leg[2]} {shank_m.mean():.3f} m, +- {shank_m.std():.3f}")
+    for name, own in found.items():
+        posed = [body for body in own.bodies if body.joints_m]
+        places_m = np.array([body.joints_m for body in posed])[:, own_places]
+        due = due_m[[body.frame for body in posed]]
+        off_m = np.linalg.norm(places_m - due, axis=2)
+        crossed = np.linalg.norm(places_m - due[:, others], axis=2) < EXCHANGED * off_m
+        print(
+            f"{name}: {1e3 * off_m.mean():.0f} mm (median {1e3 * np.median(off_m):.0f}) from the "
+            f"landmarks of four cameras, sides exchanged in {(crossed.mean(axis=1) > 0.5).sum()} "
+            f"of {len(posed)} frames"
+        )
+
+
 def compare_knees(found: dict[str, Pair], rig: Path, path: Path) -> None:
     """Print by how much each pair has the knees straighter than a file of landmarks has them."""
     with np.load(path, allow_pickle=False) as given:
@@ -238,12 +271,14 @@ def main() -> None:
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--size", default="240x427")
     parser.add_argument("--every", type=int, default=4, help="of 60 frames a second")
+    parser.add_argument("--without-plates", action="store_true", help="nor the T-pose")
     parser.add_argument("--landmarks", type=Path, help="of the same videos, by another tracker")
     asked = parser.parse_args()
     asked.out.mkdir(parents=True, exist_ok=True)
     found: dict[str, Pair] = {}
+    wanted = asked.data.resolve(), asked.out, asked.size, asked.every
     with Decoders() as decoders:
-        for path in write_settings(asked.data.resolve(), asked.out, asked.size, asked.every):
+        for path in write_settings(*wanted, plates=not asked.without_plates):
             settings = config_file.load(path)
             rows: list[Row] = []
             tracked = track_clip(
@@ -256,8 +291,10 @@ def main() -> None:
             found[path.stem] = pair_of(rig, rows)
             told = [body.status == "tracking" for body in tracked.bodies]
             print(f"{path.stem}: tracking in {np.mean(told):.1%} of {len(told)} frames")
+            print(*tracked.facts["warnings"], sep="\n")
     compare(found)
     if asked.landmarks is not None:
+        compare_joints(found, asked.out / "trial.json", asked.landmarks)
         compare_knees(found, asked.out / "trial.json", asked.landmarks)
 
 
