@@ -145,10 +145,11 @@ def is_believed(
     ]
     if max(scores) < LOST_SCORE and len(told) < 2:
         return False
-    if any(
+    elsewhere = sum(
         score < NOWHERE and not _is_near(joints_m, camera, person)
         for person, camera, score in views
-    ):
+    )
+    if elsewhere and len(views) - elsewhere < 2:
         return False
     if told:
         near = sum(_astray(joints_m, camera, shown) <= ASTRAY for shown, camera in told)

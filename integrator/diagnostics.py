@@ -88,7 +88,7 @@ def different_people(merged: merge_state.State) -> list[str]:
     told = " and ".join(f"view {view} was left out in {frames} frames" for view, frames in views)
     return [
         f"the views followed different people, first at {same.since_s:.1f} s: their sight lines do "
-        f"not meet, nor do they move alike; {told}"
+        f"not meet; {told}"
     ]
 
 

@@ -73,7 +73,7 @@ def _of_person(state: State, instant: Instant) -> tuple[State, Instant, Instant]
     if state.rig is None or state.scale_source == "assumed":
         return state, instant, shown
     lasting = belief.lost_frames(state.period_s)
-    expected = same_person.Expected(state.person.believed_m, lasting)
+    expected = same_person.Expected(state.person.expected_m(lasting), lasting)
     same = same_person.step(state.same, undistorted_rig(state.rig), shown, expected)
     if same.is_apart and not state.same.is_apart:
         state = _without_another(state, lasting)

@@ -77,8 +77,7 @@ class Waiting(Phase, frozen=True, tag=True):
     def pose(self) -> None:
         """No pose."""
 
-    @property
-    def believed_m(self) -> None:
+    def expected_m(self, lost: int) -> None:
         """No place."""
 
 
@@ -98,10 +97,9 @@ class Following(Phase, frozen=True, tag=True):
         """(25,) the pose of the last instant."""
         return self.found.pose
 
-    @property
-    def believed_m(self) -> Vector | None:
-        """Place of the person, (3,) world; None while they are not believed."""
-        return None if self.doubted else self.pose[:3]
+    def expected_m(self, lost: int) -> Vector | None:
+        """Place of the person, (3,) world; None where they are lost, after so many instants."""
+        return self.pose[:3] if self.doubted < lost else None
 
     def places_m(self, pose: Vector) -> NDArray[np.float64]:
         """The joints (15, 3) of the last instant, world: as found, or else from a pose."""

@@ -182,6 +182,13 @@ def test_a_body_that_is_nowhere_in_a_silhouette_is_believed_where_landmarks_show
     assert is_believed(BODY, RIG, (report(0, BODY), None), (0.7, 0.0))
 
 
+def test_of_three_views_one_silhouette_that_is_a_things_takes_no_belief() -> None:
+    three = msgspec.structs.replace(RIG, cameras=(*RIG.cameras, RIG.cameras[0]))
+    thing = report(0, BODY, 0.4)
+    assert is_believed(BODY, three, (*pair(BODY), thing), (*FITS, 0.0))
+    assert not is_believed(BODY, three, (report(0, BODY), thing, thing), (FITS[0], 0.0, 0.0))
+
+
 @pytest.mark.parametrize(
     ("on_floor", "sure", "believed"),
     [

@@ -10,6 +10,7 @@ from test_own_landmarks import acted, nobody, seen
 
 from common.body.body import JOINT_NAMES
 from common.body.observation import Landmarks
+from common.config.part_settings import SilhouetteSettings
 from common.config.settings import Settings
 from common.video.pictures import Image
 from runtime.unfinished.state_codec import packed, unpacked
@@ -219,6 +220,18 @@ def test_a_late_frame_of_two_views_keeps_what_is_known(monkeypatch: pytest.Monke
     kept, shown = step(known, late, EMPTY, SETTINGS, alone=False)
     assert (kept, shown) == (known, Shown(LandmarkResult(None)))
     assert scene.searches == []
+
+
+def test_a_late_frame_is_looked_at_where_no_background_shows_the_person(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    Scene(monkeypatch, standing(100.0))
+    known, late = State(of_one(standing(100.0), 2.0), 2.0), frame(9.0, hurried=True)
+    without = msgspec.structs.replace(
+        SETTINGS, silhouette=SilhouetteSettings(background="none"), landmarks="own"
+    )
+    _, shown = step(known, late, EMPTY, without, alone=False)
+    assert shown.followed.landmarks == standing(100.0)
 
 
 def test_an_outside_source_is_asked_for_one_person_in_a_hurry_too(

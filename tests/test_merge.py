@@ -554,6 +554,30 @@ def test_what_came_of_two_people_is_forgotten_and_a_body_that_was_seen_before_is
         assert merge._without_another(state, LOST).person == Waiting(body, ever_confirmed=True)
 
 
+def test_a_doubted_instant_does_not_exchange_the_person_for_a_surer_one() -> None:
+    """The followed one's landmarks are unsure in view 2 for half a second."""
+    masks = silhouettes(standing()), silhouettes(standing((2.2, -2.2)))
+    state = merge_state.init(RIG, PERIOD_S, Settings(), DEFAULT)
+    for n in range(50):
+        if n == 41:
+            assert isinstance(state.person, Following)
+            state = state._replace(person=state.person._replace(doubted=1))
+        sure = 0.4 if 40 <= n < 48 else 0.9
+        people = [
+            [seen(view, first_m(n), sure if view else 0.9), seen(view, other_m(n))]
+            for view in (0, 1)
+        ]
+        shown = [
+            [
+                msgspec.structs.replace(observation(mask[view]), landmarks=one.landmarks)
+                for mask, one in zip(masks, people[view], strict=True)
+            ]
+            for view in (0, 1)
+        ]
+        state, *_ = merge.step(state, instant(n, *shown))
+        assert state.same.chosen == (0, 0), n
+
+
 def test_an_assumed_rig_tells_no_people_apart() -> None:
     state = merge_state.init(RIG, PERIOD_S, Settings(), DEFAULT)._replace(scale_source="assumed")
     for n in range(30):

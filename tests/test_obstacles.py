@@ -1,6 +1,7 @@
 """What stands before people hides them in the mask, and leaves their joints where they are."""
 
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 import pytest
@@ -54,7 +55,8 @@ def test_a_picture_without_an_obstacle_is_what_its_seed_made_before() -> None:
     for seed in range(20):
         one = composite(example(), example, lambda: FLAT, np.random.default_rng(seed))
         rare = made(seed, 1e-9)
-        assert all(np.array_equal(a, b) for a, b in zip(one, rare, strict=True))
+        pairs: list[Any] = list(zip(one, rare, strict=True))
+        assert all(np.array_equal(a, b) for a, b in pairs)
 
 
 def test_an_obstacle_changes_no_joint_and_no_other_choice() -> None:

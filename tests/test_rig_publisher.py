@@ -49,7 +49,10 @@ def test_views_that_follow_different_people_are_told_instead_of_a_doubt_about_th
     pair = same_person.Pair((0, 1), Clash(is_apart=True))
     apart = KNOWN._replace(same=same_person.State((0, -1), (pair,), (0, 3), 0.2))
     told = RigPublisher(LocalBus())
-    assert told.doubts(apart) == diagnostics.different_people(apart)
+    first = diagnostics.different_people(apart)
+    assert told.doubts(apart) == first
+    later = apart._replace(same=apart.same._replace(left_out=(0, 9)))
+    assert told.doubts(later) == first, "a line for each frame"
     assert told.doubts(KNOWN) == ["40 mm apart"]
 
 

@@ -7,10 +7,12 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from staging import RIG
+from test_rig_agreement import turned
 from two_people import first_m, instant, other_m, seen
 
+from calibration.gate.sight_clash import LATEST
 from common.bus.instant import Instant
-from integrator.rig.same_person import Expected, State, of_person, step
+from integrator.rig.same_person import GONE, Expected, State, of_person, step
 from runtime.unfinished.state_codec import packed, unpacked
 
 LASTING = 5
@@ -58,6 +60,29 @@ def test_a_view_that_is_back_counts_again_after_as_long_and_its_absence_is_remem
     state = run(range(44, 45), (first_m, first_m), state)
     assert (state.chosen, state.is_apart) == ((0, 0), False)
     assert state.left_out == (0, 10)
+
+
+def test_a_view_that_was_left_out_counts_again_once_the_kept_one_shows_no_person_for_long() -> None:
+    state = run(range(30, 40), (first_m, other_m), run(range(30), (first_m, first_m)))
+    assert state.chosen == (0, -1)
+    for k in range(40, 40 + GONE * LASTING):
+        shown = instant(k, (), (seen(1, other_m(k)),))
+        state = step(state, RIG, shown, Expected(None, LASTING))
+        assert state.chosen == (-1, -1)
+    shown = instant(99, (), (seen(1, other_m(99)),))
+    assert step(state, RIG, shown, Expected(None, LASTING)).chosen == (-1, 0)
+
+
+def test_what_turns_out_to_be_the_rig_is_not_remembered_as_different_people() -> None:
+    """Camera 2 is lowered by half a metre, which its picture did not show."""
+    wrong = turned(RIG, 0.0, 0.5)
+    state = run(range(30), (first_m, first_m))
+    for k in range(30, 45 + LATEST):
+        shown = instant(k, (seen(0, first_m(k)),), (seen(1, first_m(k)),))
+        state = step(state, wrong, shown, Expected(AT_M, LASTING))
+        if k == 40:
+            assert (state.is_apart, sum(state.left_out) > 0) == (True, True)
+    assert (state.is_apart, state.left_out, state.since_s) == (False, (0, 0), None)
 
 
 def test_at_the_start_the_surer_view_is_kept() -> None:

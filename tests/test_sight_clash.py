@@ -74,6 +74,14 @@ def test_what_is_between_meeting_and_clashing_changes_nothing() -> None:
     assert after(unsure, unsure._replace(gap_m=math.nan), clash=before) == before
 
 
+def test_views_that_are_apart_are_one_again_by_a_rig_that_is_a_little_wrong() -> None:
+    """Half of the way from meeting to clashing, to which no other evidence comes."""
+    between = [each._replace(gap_m=(MEETS_M + CLASHES_M) / 2.0) for each in ONE]
+    apart = after(*ONE[:10], *TWO[10:25])
+    assert after(*between[25:29], clash=apart).is_apart
+    assert not after(*between[25:30], clash=apart).is_apart
+
+
 def test_views_that_meet_again_for_as_long_follow_one_person() -> None:
     apart = after(*ONE[:10], *TWO[10:25])
     assert after(*ONE[25:29], clash=apart).is_apart

@@ -64,9 +64,9 @@ def step(
 ) -> tuple[State, Shown]:
     """The landmarks of a frame: our own network's, or those that an outside source sent with it.
 
-    A frame that comes late is skipped, and keeps what is known. A single view has no other to rely
-    on: its landmarks are computed even then, with one look instead of two. An outside source is
-    asked for one person.
+    A frame that comes late is skipped, and keeps what is known, where a background shows the
+    person. A single view has no other to rely on: its landmarks are computed even then, with
+    one look instead of two. An outside source is asked for one person.
 
     Args:
         state: From the frame before.
@@ -80,7 +80,7 @@ def step(
     if not settings.looks_itself:
         result = LandmarkResult(nearest_landmarks(frame.landmarks, seen.box))
         return State(known_people.of_one(result.landmarks, frame.captured_s)), Shown(result)
-    if frame.hurried and not alone:
+    if frame.hurried and not alone and settings.silhouette.background != "none":
         return state, Shown(LandmarkResult(None), state.people.followed)
     people = known_people.expected_at(state.people, root_px)
     model = LandmarkModel(network_of(settings.landmarks), alone and not frame.hurried)

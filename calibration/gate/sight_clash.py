@@ -89,9 +89,11 @@ def step(clash: Clash, now: Meeting, lasting: int) -> Clash:
     Args:
         clash: The evidence so far.
         now: Both views, in an instant in which both show a person.
-        lasting: Number of instants in a row from which on evidence counts.
+        lasting: Number of instants from which on evidence counts: those that contradict one person,
+            less those since that confirm one. While the views are apart, all that do not clash
+            confirm one.
     """
-    if now.gap_m < MEETS_M:
+    if now.gap_m < MEETS_M or (clash.is_apart and now.gap_m <= CLASHES_M):
         return _met(clash, lasting)
     if not now.gap_m > CLASHES_M:
         return clash

@@ -14,6 +14,7 @@ class RigPublisher:
         self._bus, self._calibration = bus, -1
         self._news: tuple[str, ...] = ()
         self._doubt = ""
+        self._apart: list[str] = []
 
     def rig(self, state: State, late_s: float) -> None:
         """Publish the rig as soon as it is known, and each later one."""
@@ -32,7 +33,8 @@ class RigPublisher:
         """The first report that the rig in use is not believable; where the views follow different
         people, that instead."""
         if state.same.is_apart:
-            return diagnostics.different_people(state)
+            self._apart = self._apart or diagnostics.different_people(state)
+            return self._apart
         self._doubt = self._doubt or diagnostics.doubt(state)
         return [self._doubt] if self._doubt else []
 

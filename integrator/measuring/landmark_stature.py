@@ -68,8 +68,8 @@ def _stature_m(rig: Rig, shown: list[Landmarks | None], known_m: float) -> float
         views = zip(shown, rig.cameras, strict=True)
         each_m = [by_floor_m(each, camera) for each, camera in views if each is not None]
         least_m = [each for each in each_m if each is not None]
-        alone_m = least_m[0] if len(least_m) == 1 else 0.0  # two views contradict each other
-        found_m = alone_m if alone_m > known_m else 0.0
+        # two views contradict each other; who is lower may crouch, and is no evidence
+        found_m = max(least_m[0], known_m) if len(least_m) == 1 else 0.0
     low, high = STATURES_M
     return found_m if low <= found_m <= high else None
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from itertools import combinations
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import msgspec
 import numpy as np
@@ -16,6 +16,10 @@ from common.rig.camera import Rig
 from integrator.rig import person_choice
 from integrator.rig.person_choice import AWAY_COST, Chosen
 
+GONE: Final = 6
+"""The view that is kept has lost the person after so many times as many instants as make evidence:
+2 s; then the others count again."""
+
 
 class Pair(NamedTuple):
     """Two views, and what they have shown of one person or of two."""
@@ -25,6 +29,8 @@ class Pair(NamedTuple):
     favour: float = 0.0
     """By how much the first view shows the expected person better than the other, and its
     landmarks are surer: the sum over the clashing instants."""
+    absent: int = 0
+    """Number of instants in a row in which the view that is kept shows no person."""
 
     @property
     def other_one(self) -> int:
@@ -67,7 +73,8 @@ def step(state: State, rig: Rig, shown: Instant, expected: Expected) -> State:
     """Process one instant, before anything else reads its views.
 
     Views whose sight lines clash for long follow different people, unless the rig is wrong. The
-    view that shows the expected person is kept, at the start the one with the surer landmarks.
+    view that shows the expected person is kept, at the start the one with the surer landmarks, as
+    long as it shows a person.
 
     Args:
         state: Of the instant before, by the same rig.
@@ -92,12 +99,14 @@ def step(state: State, rig: Rig, shown: Instant, expected: Expected) -> State:
         for pair in state.pairs or _pairs(len(people))
     )
     out = _left_out(pairs)
-    before = state.left_out or (0,) * len(people)
+    before, since_s = state.left_out or (0,) * len(people), state.since_s
+    if any(_is_the_rigs(*each) for each in zip(state.pairs, pairs, strict=bool(state.pairs))):
+        before, since_s = (0,) * len(people), None
     return State(
         tuple(-1 if n in out else index for n, index in enumerate(chosen)),
         pairs,
         tuple(count + (n in out) for n, count in enumerate(before)),
-        now_s if out and state.since_s is None else state.since_s,
+        now_s if out and since_s is None else since_s,
     )
 
 
@@ -115,6 +124,11 @@ def of_person(instant: Instant, chosen: Chosen) -> Instant:
     return Instant(tuple(views))
 
 
+def _is_the_rigs(before: Pair, pair: Pair) -> bool:
+    """Whether what was taken for different people turns out to be the rig."""
+    return before.clash.is_apart and not pair.clash.is_apart and bool(pair.clash.rows)
+
+
 def _pairs(views: int) -> tuple[Pair, ...]:
     return tuple(Pair(pair) for pair in combinations(range(views), 2))
 
@@ -129,9 +143,14 @@ def _with_instant(
     """Two views after an instant."""
     one, other = pair.views
     first, second = seen[one], seen[other]
-    if first is None or second is None or first.landmarks is None or second.landmarks is None:
-        return pair
     now_s, lasting = now
+    if first is None or second is None:
+        kept = one if pair.other_one == other else other
+        absent = pair.absent + 1 if pair.clash.is_apart and seen[kept] is None else 0
+        over = absent > GONE * lasting
+        return Pair(pair.views, Clash(pair.clash.met)) if over else pair._replace(absent=absent)
+    if first.landmarks is None or second.landmarks is None:
+        return pair
     rows = row_of_landmarks(now_s, first.landmarks), row_of_landmarks(now_s, second.landmarks)
     apart_m = gap_m((rig.cameras[one], rig.cameras[other]), first, second)
     clash = sight_clash.step(pair.clash, Meeting(apart_m, rows), lasting)
