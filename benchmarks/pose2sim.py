@@ -20,6 +20,7 @@ from typing import Any, Final, NamedTuple
 
 import cv2
 import numpy as np
+from four_views import KNEES, bent_deg, joints_of
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
@@ -46,7 +47,6 @@ BOXED: Final = (1080, 1920)
 WHOLE: Final = (1088, 1920)
 BAR_PX: Final = 7
 """... so high each. Of the trial they are cam01's and cam02's, of the T-pose the other two's."""
-KNEES: Final = (("l_hip", "l_knee", "l_ankle"), ("r_hip", "r_knee", "r_ankle"))
 EXCHANGED: Final = 0.7
 """Joints nearer to the other side's than so many of the distance to their own are exchanged."""
 SHOWN: Final = 12
@@ -197,45 +197,17 @@ def compare(found: dict[str, Pair]) -> None:
         print(f"{one} and {two} have joints {np.nanmedian(off_mm):.0f} mm apart (median)")
 
 
-def bent_deg(joints_m: NDArray[np.float64], names: list[str]) -> NDArray[np.float64]:
-    """Angles of the left and the right knee, (n, 2), 180 of a straight one, of joints (n, J, 3)."""
-    angles = []
-    for leg in KNEES:
-        hip, knee, ankle = (joints_m[:, names.index(name)] for name in leg)
-        up, down = hip - knee, ankle - knee
-        cosine = (up * down).sum(1) / np.linalg.norm(up, axis=1) / np.linalg.norm(down, axis=1)
-        angles.append(np.degrees(np.arccos(cosine.clip(-1.0, 1.0))))
-    return np.stack(angles, axis=1)
-
-
-def landmarks_m(cameras: list[dict[str, Any]], path: Path) -> NDArray[np.float64]:
-    """Joints that a file of landmarks has of the four videos, (frames, joints, 3), by all cameras:
-    linear least squares, each weighed by how visible it is."""
-    rows = []
-    with np.load(path, allow_pickle=False) as given:
-        for camera in cameras:
-            video = f"pose2sim_balancing/{camera['name']}.mp4"
-            scale = np.array(WHOLE) / given[f"{video}__size"]
-            places_px = (given[video][..., :2] * scale).reshape(-1, 1, 2).astype(np.float64)
-            lens = np.array(camera["K"]), np.array(camera["distortion"])
-            seen = cv2.undistortPoints(places_px, *lens).reshape(*given[video].shape[:2], 2, 1)
-            P = np.column_stack([camera["R"], camera["t"]])
-            rows.append(given[video][..., 2, None, None] * (seen * P[2] - P[:2]))
-    homogeneous = np.linalg.svd(np.concatenate(rows, axis=2))[2][..., -1, :]
-    return np.asarray(homogeneous[..., :3] / homogeneous[..., 3:])
-
-
 def compare_joints(found: dict[str, Pair], rig: Path, path: Path) -> None:
     """Print how far each pair's joints are from those of a file of landmarks, and in how many
     frames most of them are nearer to the other side's."""
     with np.load(path, allow_pickle=False) as given:
         names = given["joint_names"].tolist()
-    due_m = landmarks_m(json.loads(rig.read_text())["cameras"], path)
+    due_m = joints_of(json.loads(rig.read_text()), path)
     own_places = [JOINT_NAMES.index(name) for name in names]
     others = [names.index({"l": "r", "r": "l"}[name[0]] + name[1:]) for name in names]
-    for leg in KNEES:
-        shank_m = np.linalg.norm(np.subtract(*(due_m[:, names.index(n)] for n in leg[1:])), axis=1)
-        print(f"landmarks: {leg[1]} to {leg[2]} {shank_m.mean():.3f} m, +- {shank_m.std():.3f}")
+    for _, knee, ankle in KNEES:
+        shank_m = np.linalg.norm(due_m[:, names.index(knee)] - due_m[:, names.index(ankle)], axis=1)
+        print(f"landmarks: {knee} to {ankle} {shank_m.mean():.3f} m, +- {shank_m.std():.3f}")
     for name, own in found.items():
         posed = [body for body in own.bodies if body.joints_m]
         places_m = np.array([body.joints_m for body in posed])[:, own_places]
@@ -244,7 +216,7 @@ def compare_joints(found: dict[str, Pair], rig: Path, path: Path) -> None:
         crossed = np.linalg.norm(places_m - due[:, others], axis=2) < EXCHANGED * off_m
         print(
             f"{name}: {1e3 * off_m.mean():.0f} mm (median {1e3 * np.median(off_m):.0f}) from the "
-            f"landmarks of four cameras, sides exchanged in {(crossed.mean(axis=1) > 0.5).sum()} "
+            f"landmarks of all cameras, sides exchanged in {(crossed.mean(axis=1) > 0.5).sum()} "
             f"of {len(posed)} frames"
         )
 
@@ -253,7 +225,7 @@ def compare_knees(found: dict[str, Pair], rig: Path, path: Path) -> None:
     """Print by how much each pair has the knees straighter than a file of landmarks has them."""
     with np.load(path, allow_pickle=False) as given:
         names = given["joint_names"].tolist()
-    due_deg = bent_deg(landmarks_m(json.loads(rig.read_text())["cameras"], path), names)
+    due_deg = bent_deg(joints_of(json.loads(rig.read_text()), path), names)
     for name, own in found.items():
         posed = [body for body in own.bodies if body.joints_m]
         places_m = np.array([body.joints_m for body in posed])
@@ -277,8 +249,9 @@ def main() -> None:
     asked.out.mkdir(parents=True, exist_ok=True)
     found: dict[str, Pair] = {}
     wanted = asked.data.resolve(), asked.out, asked.size, asked.every
+    paths = write_settings(*wanted, plates=not asked.without_plates)
     with Decoders() as decoders:
-        for path in write_settings(*wanted, plates=not asked.without_plates):
+        for path in paths:
             settings = config_file.load(path)
             rows: list[Row] = []
             tracked = track_clip(
@@ -289,8 +262,8 @@ def main() -> None:
             assert rig is not None
             sheet(rows, rig, asked.out / f"{path.stem}.png")
             found[path.stem] = pair_of(rig, rows)
-            told = [body.status == "tracking" for body in tracked.bodies]
-            print(f"{path.stem}: tracking in {np.mean(told):.1%} of {len(told)} frames")
+            told = np.mean([body.status == "tracking" for body in tracked.bodies])
+            print(f"{path.stem}: tracking in {told:.1%} of {len(tracked.bodies)} frames")
             print(*tracked.facts["warnings"], sep="\n")
     compare(found)
     if asked.landmarks is not None:
