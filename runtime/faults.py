@@ -52,20 +52,20 @@ def code_of(error: Exception) -> int:
 
 
 def refuse_unfollowed(clips: Mapping[str, Facts]) -> None:
-    """End a run with a code of its own where a clip's bodies are mostly not believed.
+    """End a run with a code of its own where a clip's person is mostly not followed.
 
     Raises:
-        Unfollowed: When one could not be read to its end, is believed in less than half of its
+        Unfollowed: When one could not be read to its end, is followed in less than half of its
             frames with a person, or shows no person.
     """
     _refuse_unread(clips)
-    shares = {name: facts["believed"] for name, facts in clips.items()}
+    shares = {name: facts["followed"] for name, facts in clips.items()}
     poor = {name: share or 0.0 for name, share in shares.items() if (share or 0.0) < HALF}
     if poor:
         worst = min(poor, key=lambda name: poor[name])
         found = "nobody was found" if shares[worst] is None else f"{poor[worst]:.0%}"
         raise Unfollowed(
-            f"in {len(poor)} of {counted(len(clips), 'clip')} the body is believed in less than "
+            f"in {len(poor)} of {counted(len(clips), 'clip')} the body is followed in less than "
             f"half of the frames ({worst}: {found}): do what the warnings say, name an empty "
             "picture of the room, or light it better"
         )

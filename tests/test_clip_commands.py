@@ -21,7 +21,7 @@ from tritrack.commands.clip_commands import (
     track,
 )
 
-FACTS = {"clips": {"dance": {"believed": 0.9, "frames": 30, "seen": 30}}}
+FACTS = {"clips": {"dance": {"believed": 0.9, "followed": 0.9, "frames": 30, "seen": 30}}}
 
 
 @pytest.fixture(autouse=True)
@@ -54,8 +54,8 @@ def test_all_that_is_typed_for_tracking_is_asked_for(monkeypatch: pytest.MonkeyP
     assert done.last[2].views == (1,)
 
 
-def test_a_body_that_is_hardly_believed_is_no_success(monkeypatch: pytest.MonkeyPatch) -> None:
-    facts = {"clips": {"dance": {"believed": 0.1, "warnings": []}}}
+def test_a_body_that_is_hardly_followed_is_no_success(monkeypatch: pytest.MonkeyPatch) -> None:
+    facts = {"clips": {"dance": {"believed": 0.1, "followed": 0.1, "warnings": []}}}
     instead(monkeypatch, "runtime.offline.batch.track_all", facts)
     instead(monkeypatch, "tritrack.single.single.single_all", facts)
     for command in (track, single):

@@ -41,21 +41,21 @@ def test_a_fault_that_another_process_met_is_told_once(
     assert not list(tmp_path.iterdir())
 
 
-def test_clips_that_are_mostly_not_believed_end_a_run_with_code_3() -> None:
-    refuse_unfollowed({"good": {"believed": 0.5}})
+def test_clips_that_are_mostly_not_followed_end_a_run_with_code_3() -> None:
+    refuse_unfollowed({"good": {"followed": 0.5}})
     with pytest.raises(Unfollowed, match=r"in 1 of 2 clips .* \(bad: 49%\)") as raised:
-        refuse_unfollowed({"good": {"believed": 1.0}, "bad": {"believed": 0.49}})
+        refuse_unfollowed({"good": {"followed": 1.0}, "bad": {"followed": 0.49}})
     assert code_of(raised.value) == 3
     assert told(raised.value) == str(raised.value)
 
 
-def test_a_clip_that_was_not_read_to_its_end_goes_before_what_is_believed_of_it() -> None:
-    lost = {"believed": None, "unread": {"clips/a/cam1.mp4": {"read": 15, "of": 228}}}
+def test_a_clip_that_was_not_read_to_its_end_goes_before_how_much_of_it_is_followed() -> None:
+    lost = {"followed": None, "unread": {"clips/a/cam1.mp4": {"read": 15, "of": 228}}}
     with pytest.raises(Unfollowed, match=r"\(clips/a/cam1\.mp4: 15 of 228\)") as raised:
-        refuse_unfollowed({"good": {"believed": 1.0}, "a": lost})
+        refuse_unfollowed({"good": {"followed": 1.0}, "a": lost})
     assert code_of(raised.value) == 3
 
 
 def test_a_clip_that_shows_nobody_is_not_followed_and_that_is_said() -> None:
     with pytest.raises(Unfollowed, match=r"in 1 of 2 clips .* \(empty: nobody was found\)"):
-        refuse_unfollowed({"good": {"believed": 1.0}, "empty": {"believed": None}})
+        refuse_unfollowed({"good": {"followed": 1.0}, "empty": {"followed": None}})

@@ -21,6 +21,7 @@ from runtime.store.run_exports import EXPORTS
 from runtime.store.runs import (
     RunError,
     believed,
+    followed,
     summary_of,
     unwritable,
     write_postures,
@@ -141,6 +142,8 @@ def test_only_what_the_views_bear_out_counts_as_believed() -> None:
     assert believed(bodies) == summary_of(bodies, Settings(), {})["believed"] == 0.5
     assert believed([body(0, status="predicted")]) == 0.0
     assert believed([body(0)]) is None
+    assert followed(bodies) == summary_of(bodies, Settings(), {})["followed"] == 0.5
+    assert followed([body(0)]) is None
 
 
 @pytest.mark.parametrize(
@@ -151,6 +154,7 @@ def test_a_frame_counts_less_where_joints_are_more_likely_wrong_than_right(
     confidence: tuple[float, ...], share: float
 ) -> None:
     doubtful = body(0, status="tracking", confidence=confidence)
+    assert followed([doubtful]) == summary_of([doubtful], Settings(), {})["followed"] == 1.0
     assert believed([doubtful]) == summary_of([doubtful], Settings(), {})["believed"] == share
     sure = body(0, status="tracking", confidence=(0.9,) * 15)
     assert believed([doubtful, sure]) == (1.0 + share) / 2.0

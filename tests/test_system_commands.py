@@ -318,7 +318,7 @@ def test_a_clip_that_is_hardly_followed_ends_with_a_code_of_its_own(
     monkeypatch.setattr("integrator.belief.is_believed", lambda *_: False)
     said = tritrack("track", clip, "--out", tmp_path)
     assert said.code == 3
-    assert "believed in less than half" in said.errors[0]
+    assert "followed in less than half" in said.errors[0]
     summary = json.loads((tmp_path / clip.name / "summary.json").read_text())
     assert summary["believed"] < 0.2
     assert summary["status"]["lost"] > summary["status"]["predicted"]
@@ -364,7 +364,7 @@ def test_a_clip_that_shows_nobody_is_not_followed_and_is_written(
     refilmed(folder, lambda film: 4 * film[:8])
     said = tritrack(command, folder, "--out", tmp_path / "out", "--json")
     assert said.code == 3
-    assert said.errors[-1].startswith("error: in 1 of 1 clip the body is believed in less than")
+    assert said.errors[-1].startswith("error: in 1 of 1 clip the body is followed in less than")
     assert "(clip: nobody was found)" in said.errors[-1]
     assert json.loads(said.out)["clips"]["clip"]["believed"] is None
     assert (tmp_path / "out" / "clip" / "poses.npz").is_file()

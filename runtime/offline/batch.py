@@ -24,7 +24,7 @@ from runtime.overrides import overridden
 from runtime.store.clip_paths import ClipsFailed, run_names, without_plain_files
 from runtime.store.other_run import OtherRun, RunOf, refuse_other, run_of
 from runtime.store.recording import Head, recording_to, refuse_without_library
-from runtime.store.runs import believed, write_run
+from runtime.store.runs import believed, followed, write_run
 from runtime.terminal import Tell, bar, by_share, complain, say, warn
 from runtime.unfinished.resuming import Wanted, done_before, resumable
 from runtime.unfinished.unfinished_run import CannotResume
@@ -118,6 +118,7 @@ def _tracked(
         if word := clock_word(tracked.facts):
             say(console, f"{folder.name}: {word}")
         named = {"clip": folder.name, "believed": believed(tracked.bodies)}
+        named["followed"] = followed(tracked.bodies)
         facts = {**tracked.facts, **named, **_run_of(settings).facts, **made_of}
         write_run(folder, tracked.bodies, settings, facts)
         if heard is not None:

@@ -141,6 +141,16 @@ def believed(bodies: Iterable[Body]) -> float | None:
     return _share(belief, seen)
 
 
+def followed(bodies: Iterable[Body]) -> float | None:
+    """Share of the frames with a person in which the views confirm the body, however sure its
+    joints are; None without a person."""
+    return _followed(Counter(body.status for body in bodies))
+
+
+def _followed(often: Counter[Status]) -> float | None:
+    return _share(sum(often[status] for status in BELIEVED), often.total() - often["empty"])
+
+
 def _belief(body: Body) -> float:
     """How much a frame counts as believed, in [0, 1]."""
     if body.status not in BELIEVED:
@@ -168,6 +178,7 @@ def summary_of(bodies: Iterable[Body], settings: Settings, facts: Facts) -> Fact
         "frames_with_pose": len(matches),
         "status": {status: often[status] for status in get_args(Status)},
         "believed": _share(belief, often.total() - often["empty"]),
+        "followed": _followed(often),
         "matches_a_frame": round(float(np.mean(matches)), 1) if matches else 0.0,
         **facts,
         "bdp_m": None if last is None else msgspec.to_builtins(last.bdp),

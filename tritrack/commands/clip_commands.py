@@ -64,7 +64,7 @@ def track(
     A run that is stopped, by Ctrl-C or a crash, resumes with the same command and --resume, and
     gives the same poses as without a stop.
 
-    Ends with exit code 3 where a clip's body is believed in less than half of its frames with a
+    Ends with exit code 3 where a clip's body is followed in less than half of its frames with a
     person, no person is found, or a video could not be read to its end.
 
     Example: tritrack track clips/*/ --mode paper --out runs
@@ -153,7 +153,7 @@ def single(
 
     A run that is stopped resumes with the same command and --resume.
 
-    Ends with exit code 3 where a video's body is believed in less than half of its frames with a
+    Ends with exit code 3 where a video's body is followed in less than half of its frames with a
     person, no person is found, or a video could not be read to its end.
 
     Example: tritrack single dance.mp4 --out runs
