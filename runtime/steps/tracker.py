@@ -7,7 +7,7 @@ from typing import Final, Literal, NamedTuple
 import msgspec
 import numpy as np
 
-from common.bus.messages import Body, Guide, Posture, ViewerNumber, place_in_rig
+from common.bus.messages import Body, Guide, Posture, ViewerNumber
 from common.config.part_settings import BodySettings, SettingsError, SilhouetteSettings
 from common.config.picture_size import size_of
 from common.config.settings import Settings
@@ -202,9 +202,11 @@ class Tracker:
         method = METHODS[settings.mode]
         state = merge_state.init(whole_rig(clip), period_s, settings, method, start)
         naming = recognizer.init(recognizer.model_of(settings), settings.recognizer.window_frames)
+        backgrounds = self._backgrounds(clip, given)
         viewers = {
-            number: viewer_of(clip.views[place_in_rig(number)], clip, settings, method, known)
-            for number, known in self._backgrounds(clip, given).items()
+            view.number: viewer_of(view, clip, settings, method, backgrounds[view.number])
+            for view in clip.views
+            if backgrounds
         }
         calibration = LiveCalibration(state, looks=False, solver=SolverAtOnce())
         learns: Learns = {} if viewers else {view.number: () for view in clip.views}
