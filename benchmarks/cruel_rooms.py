@@ -29,7 +29,7 @@ from lab.accuracy.accuracy import compare
 from runtime.live.table import table_of_rows
 from runtime.offline.lockstep import Decoders, Tracked, track_clip
 from runtime.store.pose_arrays import poses
-from runtime.store.runs import believed
+from runtime.store.runs import belief_facts
 from synth.motion.motions import EMPTY, POSTURES, Motion, performance
 from synth.person.people import Colour, Look, Person, person
 from synth.picture.exposure import default_rig
@@ -190,7 +190,7 @@ def row_of(clip: Path, tracked: Tracked) -> dict[str, Any]:
     off_mm = 1000 * np.linalg.norm(compared.tracked_m - compared.true_m, axis=2).mean(axis=1)
     due = int(truth["present"].sum())
     off_mm = np.append(off_mm, np.full(due - len(off_mm), NO_POSE_MM))
-    sure = believed(tracked.bodies) or 0.0
+    sure = belief_facts(tracked.bodies)["believed"] or 0.0
     return {"name": clip.name, "mm": off_mm.mean(), "worst mm": off_mm.max(), "believed": sure}
 
 

@@ -262,8 +262,8 @@ def main() -> None:
             assert rig is not None
             sheet(rows, rig, asked.out / f"{path.stem}.png")
             found[path.stem] = pair_of(rig, rows)
-            told = np.mean([body.status == "tracking" for body in tracked.bodies])
-            print(f"{path.stem}: tracking in {told:.1%} of {len(tracked.bodies)} frames")
+            share = np.mean([body.status == "tracking" for body in tracked.bodies])
+            print(f"{path.stem}: tracking in {share:.1%} of {len(tracked.bodies)} frames")
             print(*tracked.facts["warnings"], sep="\n")
     compare(found)
     if asked.landmarks is not None:

@@ -125,7 +125,8 @@ def lost_frames(period_s: float) -> int:
 def is_believed(
     joints_m: NDArray[np.float64], rig: Rig, seen: Seen, scores: tuple[float, ...]
 ) -> bool:
-    """Whether the views confirm a body; of views with trusted landmarks, two must.
+    """Whether the views confirm a body; of views with trusted landmarks, two must. A view in which
+    it is nowhere is outvoted by two others.
 
     Args:
         joints_m: (15, 3) world, JOINT_NAMES.

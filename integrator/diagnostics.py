@@ -85,10 +85,10 @@ def different_people(merged: merge_state.State) -> list[str]:
     views = [(view, frames) for view, frames in enumerate(same.left_out, 1) if frames]
     if not views or same.since_s is None:
         return []
-    told = " and ".join(f"view {view} was left out in {frames} frames" for view, frames in views)
+    counts = " and ".join(f"view {view} was left out in {frames} frames" for view, frames in views)
     return [
         f"the views followed different people, first at {same.since_s:.1f} s: their sight lines do "
-        f"not meet; {told}"
+        f"not meet; {counts}"
     ]
 
 

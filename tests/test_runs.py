@@ -20,8 +20,7 @@ from runtime.store.pose_arrays import poses
 from runtime.store.run_exports import EXPORTS
 from runtime.store.runs import (
     RunError,
-    believed,
-    followed,
+    belief_facts,
     summary_of,
     unwritable,
     write_postures,
@@ -139,11 +138,11 @@ def test_only_what_the_views_bear_out_counts_as_believed() -> None:
         for status, count in often.items()
         for _ in range(count)
     ]
-    assert believed(bodies) == summary_of(bodies, Settings(), {})["believed"] == 0.5
-    assert believed([body(0, status="predicted")]) == 0.0
-    assert believed([body(0)]) is None
-    assert followed(bodies) == summary_of(bodies, Settings(), {})["followed"] == 0.5
-    assert followed([body(0)]) is None
+    assert belief_facts(bodies)["believed"] == summary_of(bodies, Settings(), {})["believed"] == 0.5
+    assert belief_facts([body(0, status="predicted")])["believed"] == 0.0
+    assert belief_facts([body(0)])["believed"] is None
+    assert belief_facts(bodies)["followed"] == summary_of(bodies, Settings(), {})["followed"] == 0.5
+    assert belief_facts([body(0)])["followed"] is None
 
 
 @pytest.mark.parametrize(
@@ -154,10 +153,18 @@ def test_a_frame_counts_less_where_joints_are_more_likely_wrong_than_right(
     confidence: tuple[float, ...], share: float
 ) -> None:
     doubtful = body(0, status="tracking", confidence=confidence)
-    assert followed([doubtful]) == summary_of([doubtful], Settings(), {})["followed"] == 1.0
-    assert believed([doubtful]) == summary_of([doubtful], Settings(), {})["believed"] == share
+    assert (
+        belief_facts([doubtful])["followed"]
+        == summary_of([doubtful], Settings(), {})["followed"]
+        == 1.0
+    )
+    assert (
+        belief_facts([doubtful])["believed"]
+        == summary_of([doubtful], Settings(), {})["believed"]
+        == share
+    )
     sure = body(0, status="tracking", confidence=(0.9,) * 15)
-    assert believed([doubtful, sure]) == (1.0 + share) / 2.0
+    assert belief_facts([doubtful, sure])["believed"] == (1.0 + share) / 2.0
 
 
 def test_a_run_of_three_cameras_has_entries_of_each_by_name() -> None:

@@ -76,16 +76,8 @@ def advice_on(
         other = trust_of(exchanged_rig(rig), sighting, period_s, clock)
         if other is not None and "facing" not in other.odd:
             return f"the cameras are exchanged: change their order; else {AGAIN}"
-    if trust.odd == ("late",) and clock.rivals_s:
-        candidates_s = sorted(set_back_s + late for late in (clock.late_s, *clock.rivals_s))
-        several = ", ".join(f"{late_s:+.2f}" for late_s in candidates_s)
-        return f"the motion does not show which of {several} s: say it by --offset SECONDS"
     if trust.odd == ("late",):
-        late_s = set_back_s + trust.late_frames * period_s
-        return (
-            f"view 2 is {trust.late_frames:+.1f} frames late: say so "
-            f"(--offset {late_s:.2f}), or start both cameras by one signal"
-        )
+        return _advice_on_clock(trust, clock, period_s, set_back_s)
     if "motion" in trust.odd and not {"apart", "stature"} & set(trust.odd):
         return (
             "the views do not show one motion: see that both are of one take, and that their "
@@ -99,6 +91,19 @@ def advice_on(
         )
     case = case_of(rig, sighting, clock)
     return f"{_told(_mended(case))}: {AGAIN}" if case else AGAIN
+
+
+def _advice_on_clock(trust: Trust, clock: Clock, period_s: float, set_back_s: float) -> str:
+    """The line about view 2's delay, where that alone is odd."""
+    if clock.rivals_s:
+        candidates_s = sorted(set_back_s + late for late in (clock.late_s, *clock.rivals_s))
+        several = ", ".join(f"{late_s:+.2f}" for late_s in candidates_s)
+        return f"the motion does not show which of {several} s: say it by --offset SECONDS"
+    late_s = set_back_s + trust.late_frames * period_s
+    return (
+        f"view 2 is {trust.late_frames:+.1f} frames late: say so "
+        f"(--offset {late_s:.2f}), or start both cameras by one signal"
+    )
 
 
 def _is_one_side(sighting: Sighting) -> bool:

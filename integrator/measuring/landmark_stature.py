@@ -59,7 +59,8 @@ def step(body: Known, rig: Rig, seen: TwoSeen) -> Known:
 
 
 def _stature_m(rig: Rig, shown: list[Landmarks | None], known_m: float) -> float | None:
-    """Stature by an instant's landmarks; None where they show none, or none above the known one."""
+    """Stature by an instant's landmarks, of a view alone the known one at least, as who crouches is
+    not small; None where they show none."""
     first, second = shown
     found_m = None
     if first is not None and second is not None:
@@ -68,8 +69,9 @@ def _stature_m(rig: Rig, shown: list[Landmarks | None], known_m: float) -> float
         views = zip(shown, rig.cameras, strict=True)
         each_m = [by_floor_m(each, camera) for each, camera in views if each is not None]
         least_m = [each for each in each_m if each is not None]
-        # two views contradict each other; who is lower may crouch, and is no evidence
-        found_m = max(least_m[0], known_m) if len(least_m) == 1 else 0.0
+        if len(least_m) != 1:  # two views contradict each other
+            return None
+        found_m = max(least_m[0], known_m)
     low, high = STATURES_M
     return found_m if low <= found_m <= high else None
 

@@ -24,7 +24,7 @@ from runtime.overrides import overridden
 from runtime.store.clip_paths import ClipsFailed, run_names, without_plain_files
 from runtime.store.other_run import OtherRun, RunOf, refuse_other, run_of
 from runtime.store.recording import Head, recording_to, refuse_without_library
-from runtime.store.runs import believed, followed, write_run
+from runtime.store.runs import belief_facts, write_run
 from runtime.terminal import Tell, bar, by_share, complain, say, warn
 from runtime.unfinished.resuming import Wanted, done_before, resumable
 from runtime.unfinished.unfinished_run import CannotResume
@@ -117,8 +117,7 @@ def _tracked(
             warn(console, f"{folder.name}: {warning}")
         if word := clock_word(tracked.facts):
             say(console, f"{folder.name}: {word}")
-        named = {"clip": folder.name, "believed": believed(tracked.bodies)}
-        named["followed"] = followed(tracked.bodies)
+        named = {"clip": folder.name, **belief_facts(tracked.bodies)}
         facts = {**tracked.facts, **named, **_run_of(settings).facts, **made_of}
         write_run(folder, tracked.bodies, settings, facts)
         if heard is not None:

@@ -130,25 +130,22 @@ def _row_of(posture: Posture) -> Facts:
     }
 
 
-def believed(bodies: Iterable[Body]) -> float | None:
-    """Share of the frames with a person in which the body is believed; None without a person.
-
-    A frame counts less where the joints' mean confidence is below CONFIDENT.
-    """
-    belief, seen = 0.0, 0
+def belief_facts(bodies: Iterable[Body]) -> Facts:
+    """`followed`: share of the frames with a person in which the views confirm the body; in
+    `believed` such a frame counts less where the joints' mean confidence is below CONFIDENT. Both
+    are None without a person."""
+    often: Counter[Status] = Counter()
+    belief = 0.0
     for body in bodies:
-        belief, seen = belief + _belief(body), seen + (body.status != "empty")
-    return _share(belief, seen)
+        often[body.status] += 1
+        belief += _belief(body)
+    return _belief_facts(often, belief)
 
 
-def followed(bodies: Iterable[Body]) -> float | None:
-    """Share of the frames with a person in which the views confirm the body, however sure its
-    joints are; None without a person."""
-    return _followed(Counter(body.status for body in bodies))
-
-
-def _followed(often: Counter[Status]) -> float | None:
-    return _share(sum(often[status] for status in BELIEVED), often.total() - often["empty"])
+def _belief_facts(often: Counter[Status], belief: float) -> Facts:
+    seen = often.total() - often["empty"]
+    confirmed = sum(often[status] for status in BELIEVED)
+    return {"believed": _share(belief, seen), "followed": _share(confirmed, seen)}
 
 
 def _belief(body: Body) -> float:
@@ -177,8 +174,7 @@ def summary_of(bodies: Iterable[Body], settings: Settings, facts: Facts) -> Fact
         "frames": often.total(),
         "frames_with_pose": len(matches),
         "status": {status: often[status] for status in get_args(Status)},
-        "believed": _share(belief, often.total() - often["empty"]),
-        "followed": _followed(often),
+        **_belief_facts(often, belief),
         "matches_a_frame": round(float(np.mean(matches)), 1) if matches else 0.0,
         **facts,
         "bdp_m": None if last is None else msgspec.to_builtins(last.bdp),

@@ -32,7 +32,7 @@ from runtime.overrides import overridden
 from runtime.store.clip_paths import ClipsFailed
 from runtime.store.other_run import OtherRun, RunOf, refuse_other, run_of
 from runtime.store.pose_arrays import mapped_poses
-from runtime.store.runs import believed, followed, write_run
+from runtime.store.runs import belief_facts, write_run
 from runtime.terminal import Tell, bar, by_pass, complain, say, warn
 from runtime.unfinished.message_file import writing
 from runtime.unfinished.resuming import Begun, Wanted, done_before, resumable
@@ -217,8 +217,7 @@ def follow(
         facts = {
             **found.facts,
             "frames_with_pose": sum(bool(body.joints_m) for body in found.bodies),
-            "believed": believed(found.bodies),
-            "followed": followed(found.bodies),
+            **belief_facts(found.bodies),
             "effort": facts_of(ledger(take_of(arrays, turn=found.turn), job.notes)),
             "notes": msgspec.to_builtins(job.notes),
             **_run_of(job).facts,

@@ -12,6 +12,7 @@ from common.video.pictures import Image
 from viewer.landmarks.keypoint_layouts import POINT
 from viewer.landmarks.landmark_looks import opened
 from viewer.landmarks.landmark_window import Window, window_about
+from viewer.landmarks.own_landmarks import MARGIN
 
 NETWORK: Final = Path(__file__).with_name("people.onnx")
 LONG_PX, MULTIPLE = 256, 32
@@ -23,8 +24,6 @@ OVERLAP: Final = 0.5
 """Intersection over union of two boxes from which they are of one person."""
 MOST: Final = 6
 """Upper bound of the number of people in a picture."""
-MARGIN: Final = 0.06
-"""How far a body reaches beyond its joints, in sides of what holds them."""
 _SHOULDERS: Final = [POINT["l_shoulder"], POINT["r_shoulder"]]
 _HIPS: Final = [POINT["l_hip"], POINT["r_hip"]]
 _AROUND: Final = np.ones((3, 3), np.uint8)
