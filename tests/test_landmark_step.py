@@ -16,10 +16,10 @@ from common.video.pictures import Image
 from runtime.unfinished.state_codec import packed, unpacked
 from viewer import landmark_step
 from viewer.captured_frame import CapturedFrame
-from viewer.landmark_step import State, step
+from viewer.landmark_step import State, _owners, step
 from viewer.landmarks.landmark_window import Window
 from viewer.landmarks.person_mask import LandmarkResult, Shown
-from viewer.people.known_people import of_one
+from viewer.people.known_people import People, Track, of_one
 from viewer.people.people_detector import Detection
 from viewer.silhouette.silhouette import Seen
 
@@ -164,6 +164,16 @@ def test_while_the_followed_person_is_out_of_sight_no_other_takes_the_place(
     state, shown = scene.step(state, 1.2)
     assert (shown.number, shown.others) == (1, ())
     assert shown.followed.landmarks is scene.people[0]
+
+
+def test_a_detection_shows_the_known_person_whom_it_overlaps_most_and_far_ones_none() -> None:
+    """Of two who stand close each has their own, in whatever order they are detected."""
+    people = People((Track(4, standing(100.0), 0.0), Track(9, standing(116.0), 0.0)), 4, 10)
+    owners = _owners(
+        [detected(118.0), detected(98.0), detected(280.0)], people, LandmarkResult(None)
+    )
+    assert owners == [9, 4, None]
+    assert _owners([], people, LandmarkResult(None)) == []
 
 
 def test_the_integrators_person_is_followed(monkeypatch: pytest.MonkeyPatch) -> None:

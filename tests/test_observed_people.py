@@ -54,6 +54,13 @@ def test_the_followed_person_is_first_and_others_have_their_own_pixels() -> None
     assert (second.width, second.height, second.cut) == (48, 48, False)
 
 
+def test_no_pixel_of_the_followed_silhouette_is_anothers_too() -> None:
+    """Also where the network does not say which pixels are the followed person's."""
+    unmasked = LandmarkResult(PERSON)
+    _, other = observed(silhouette(4, 20), Shown(unmasked, 3, ((5, result(12, 36)),)), 0.15)
+    assert columns(unpack(other)) == (20, 36)
+
+
 def test_without_the_followed_person_no_person_is_reported() -> None:
     """The first is the followed one: no other may stand in that place."""
     other = (5, result(28, 44))

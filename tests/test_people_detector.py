@@ -1,6 +1,7 @@
 """Several people in a whole picture: detected in their places, at any size."""
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ from crowds import corners, crowd, whole_people
 from test_own_landmarks import acted
 
 from common.video.pictures import Image
+from viewer.people import people_detector
 from viewer.people.people_detector import Detection, overlap, people_in
 
 
@@ -73,3 +75,36 @@ def test_boxes_overlap_by_their_common_share() -> None:
     assert overlap(box, box + np.array([2.0, 0.0])) == pytest.approx(1 / 3)
     assert overlap(box, box + np.array([4.0, 0.0])) == 0.0
     assert overlap(box * 0.0, box * 0.0) == 0.0
+
+
+class OnePeak:
+    """Stands in for the network: a person in row 10, column 20 of 48x64 cells of 5 pixels."""
+
+    def run(self, _: None, given: dict[str, Any]) -> list[np.ndarray]:
+        assert given["picture"].shape == (1, 192, 256, 3)
+        centre = np.full((1, 1, 48, 64), -9.0, np.float32)
+        size, offset = (np.zeros((1, 2, 48, 64), np.float32) for _ in range(2))
+        joints = np.zeros((1, 34, 48, 64), np.float32)
+        centre[0, 0, 10, 20] = 3.0
+        size[0, :, 10, 20], offset[0, :, 10, 20] = (8.0, 4.0), (0.5, 0.25)
+        joints[0, ::2, 10, 20], joints[0, 1::2, 10, 20] = np.arange(17) * 0.5, -np.arange(17) * 0.25
+        return [centre, size, offset, joints]
+
+
+def test_a_peak_is_a_box_about_its_cell_and_joints_away_from_it_rows_before_columns(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(people_detector, "opened", lambda _: OnePeak())
+    (found,) = people_in(np.zeros((240, 320, 3), np.uint8))
+    assert found.score == pytest.approx(1.0 / (1.0 + np.exp(-3.0)))
+    assert found.corners_px.tolist() == [[91.25, 32.5], [111.25, 72.5]]
+    away = np.arange(17)[:, None] * (-1.25, 2.5)
+    assert found.joints_px == pytest.approx(np.array((100.0, 50.0)) + away)
+
+
+def test_a_standing_persons_joints_are_from_the_head_down() -> None:
+    """By the network as shipped: nose, shoulders, hips, knees, ankles."""
+    (found,) = people_in(acted()[0].frames[0])
+    rows = [found.joints_px[part, 1].mean() for part in ([0], [5, 6], [11, 12], [13, 14], [15, 16])]
+    assert rows == sorted(rows)
+    assert np.ptp(rows) > 0.6 * np.ptp(found.corners_px[:, 1])

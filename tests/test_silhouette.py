@@ -499,3 +499,12 @@ def test_before_no_known_background_there_is_no_silhouette_whatever_changes() ->
     assert (seen.box, seen.area_px, int(seen.mask.sum())) == (None, 0, 0)
     _, seen = step(before(state, learn([empty])), person, None)
     assert seen.box is not None, "a background that is learnt during the run counts"
+
+
+def test_a_background_that_is_known_in_part_shows_silhouettes() -> None:
+    empty = np.rint(room()).astype(np.uint8)
+    person = cv2.rectangle(empty.copy(), (140, 60), (180, 200), (0, 0, 0), cv2.FILLED)
+    known = learn([empty])
+    known.uncertain[:, :100] = True
+    _, seen = step(init(known, SETTINGS, DEFAULT), person, None)
+    assert seen.area_px == pytest.approx(41 * 141, rel=0.1)
