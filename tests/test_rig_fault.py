@@ -94,13 +94,13 @@ def test_a_late_view_is_told_by_frames_and_only_where_it_is_late_alone(
     assert advice_on(PAPER, SHOWN, PERIOD_S, believed) == ""
 
 
-@pytest.mark.parametrize(("odd", "exchanged"), [(("apart",), True), (("facing",), False)])
 def test_of_a_motion_that_repeats_all_delays_are_named_from_the_videos_own_times() -> None:
     clock = Clock(0.4, (-0.6, 1.4))
     said = advice_on(PAPER, SHOWN, PERIOD_S, doubted("late"), clock, set_back_s=0.25)
     assert "which of -0.35, +0.65, +1.65 s" in said
 
 
+@pytest.mark.parametrize(("odd", "exchanged"), [(("apart",), True), (("facing",), False)])
 def test_cameras_are_exchanged_where_facings_agree_in_the_other_order(
     monkeypatch: pytest.MonkeyPatch, odd: tuple[str, ...], exchanged: bool
 ) -> None:
