@@ -186,7 +186,7 @@ from common.video.decoding import Decoder
 signal.signal(signal.SIGINT, lambda *_: None)
 def tell():
     while True:
-        time.sleep(0.01)
+        time.sleep(0.0005)
         os.killpg(0, signal.SIGINT)
 threading.Thread(target=tell, daemon=True).start()
 with Decoder() as own:

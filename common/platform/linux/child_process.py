@@ -6,6 +6,7 @@ import io
 import mmap
 import os
 import select
+import signal
 import subprocess
 import sys
 import time
@@ -16,6 +17,7 @@ import numpy as np
 
 from common.platform.linux.forked_child import ForkedChild, can_fork
 from common.platform.platform import Broken, Picture, how_it_ended
+from common.platform.spawning import OF_TERMINALS
 
 RUN: Final = f"{__package__}.run_child"
 PIPE_BYTES: Final = 1 << 20
@@ -137,12 +139,17 @@ def _executed(
     module: str, requests: int, answers: int, picture: tuple[int, ...] = ()
 ) -> subprocess.Popen[bytes]:
     """The module in a new Python, given the memory, height and width of a picture."""
-    # -P: another numpy.py in the working directory must not run.
-    return subprocess.Popen(
-        [sys.executable, "-P", "-m", RUN, module, *map(str, (answers, *picture))],
-        stdin=requests,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-        pass_fds=[answers, *picture[:1]],
-        process_group=0,
-    )
+    # Its own group is too late for a Ctrl-C that comes while it is being forked.
+    heard = signal.pthread_sigmask(signal.SIG_BLOCK, OF_TERMINALS)
+    try:
+        # -P: another numpy.py in the working directory must not run.
+        return subprocess.Popen(
+            [sys.executable, "-P", "-m", RUN, module, *map(str, (answers, *picture))],
+            stdin=requests,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            pass_fds=[answers, *picture[:1]],
+            process_group=0,
+        )
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, heard)

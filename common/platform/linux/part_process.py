@@ -13,9 +13,9 @@ from common.platform.linux.forked_child import FORK
 from common.platform.linux.own_process import be_shown_as, end_with_parent, hear_sigterm
 from common.platform.linux.reparenting import adopted, adopting, be_adopted
 from common.platform.platform import Job, Started
+from common.platform.spawning import OF_TERMINALS
 
 SPAWN: Final = multiprocessing.get_context("spawn")
-OF_TERMINALS: Final = (signal.SIGINT, signal.SIGHUP)
 
 
 def begun(job: Job, forked: bool) -> Started:
