@@ -12,8 +12,9 @@ from common.config.part_settings import BusSettings, CameraSettings
 from common.config.settings import Settings
 from common.rig.camera import paper_rig
 from common.video.clip_facts import Clip, ClipView, Meta
+from common.video.clip_sources import ClipError
 from runtime.live import admission
-from runtime.live.admission import LiveRefused, admitted, opened, refuse_a_third_camera
+from runtime.live.admission import LiveRefused, admitted, opened
 
 RIG = paper_rig((160, 120), (200.0, 200.0), (4.0, 4.0))
 CAMERAS = Settings(cameras={"cam1": CameraSettings(device=0)})
@@ -66,11 +67,16 @@ def test_a_clip_gets_a_camera_for_each_viewer_and_the_lengths_that_are_known(
     assert opened(CAMERAS, "monday").name == "monday"
 
 
-def test_a_third_camera_is_for_recorded_clips() -> None:
-    cameras = {name: CameraSettings(device=n) for n, name in enumerate(("cam1", "left", "door"))}
-    said = "two cameras at most, cam1 and cam2: there are cam1, left, door; .*tritrack track$"
-    with pytest.raises(LiveRefused, match=said):
-        opened(Settings(cameras=cameras), "")
-    with pytest.raises(LiveRefused, match="there are cam1, cam3"):
-        refuse_a_third_camera(Settings(cameras={"cam1": cameras["cam1"], "cam3": cameras["left"]}))
-    refuse_a_third_camera(Settings(cameras={"cam1": cameras["cam1"], "left": cameras["left"]}))
+def test_three_cameras_without_a_calibration_or_for_the_paper_are_refused_at_once(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    views = tuple(ClipView(n, n, (160, 120), (160, 120), 15.0, 0) for n in (1, 2, 3))
+    clip = Clip("own", views, 1, None, Meta())
+    instead(monkeypatch, "common.video.clips.open_clip", clip)
+    with pytest.raises(ClipError, match="3 cameras need a calibration"):
+        opened(CAMERAS, "")
+    rig = msgspec.structs.replace(RIG, cameras=(*RIG.cameras, RIG.cameras[0]))
+    known = msgspec.structs.replace(clip, rig=rig)
+    instead(monkeypatch, "common.video.clips.open_clip", known)
+    with pytest.raises(ClipError, match="the paper's mode is for two cameras"):
+        opened(msgspec.structs.replace(CAMERAS, mode="paper"), "")

@@ -11,7 +11,7 @@ from common.config.settings import Settings
 from common.rig.rig_file import load_rig
 from common.video.clip_sources import ClipError
 from common.video.clips import open_clip
-from runtime.live.elsewhere import two_camera_clip
+from runtime.live.elsewhere import whole_clip
 
 NOWHERE, NEITHER = CameraSettings(device=63), CameraSettings(device=62)
 
@@ -28,7 +28,7 @@ def settings_of(calibration: Path, **more: object) -> Settings:
 
 def test_a_camera_is_known_by_its_calibration(calibration: Path) -> None:
     rig = load_rig(calibration)
-    clip = two_camera_clip(settings_of(calibration, size="4096x4096"))
+    clip = whole_clip(settings_of(calibration, size="4096x4096"))
     assert [view.source_size for view in clip.views] == [(rig.width, rig.height)] * 2
     assert [view.source for view in clip.views] == [63, 62]
     assert clip.rig is not None
@@ -37,24 +37,22 @@ def test_a_camera_is_known_by_its_calibration(calibration: Path) -> None:
 
 def test_the_rate_is_the_settings_the_calibrations_or_15(calibration: Path) -> None:
     edit_json(calibration, lambda rig: rig.update(fps=25))
-    assert two_camera_clip(settings_of(calibration, fps=30.0)).views[0].fps == 30.0
-    assert two_camera_clip(settings_of(calibration)).views[0].fps == 25.0
+    assert whole_clip(settings_of(calibration, fps=30.0)).views[0].fps == 30.0
+    assert whole_clip(settings_of(calibration)).views[0].fps == 25.0
     edit_json(calibration, lambda rig: rig.pop("fps"))
-    assert two_camera_clip(settings_of(calibration)).views[0].fps == 15.0
+    assert whole_clip(settings_of(calibration)).views[0].fps == 15.0
 
 
 def test_a_recorded_clip_is_looked_into_as_ever(clip: Path) -> None:
-    assert (
-        two_camera_clip(Settings(clip=str(clip))).views == open_clip(Settings(clip=str(clip))).views
-    )
+    assert whole_clip(Settings(clip=str(clip))).views == open_clip(Settings(clip=str(clip))).views
 
 
 def test_a_calibration_that_cannot_be_read_is_told(calibration: Path) -> None:
     calibration.write_text("{")
     with pytest.raises(ClipError, match=r"calibration\.json"):
-        two_camera_clip(settings_of(calibration))
+        whole_clip(settings_of(calibration))
 
 
 def test_without_a_calibration_the_camera_itself_must_be_there() -> None:
     with pytest.raises(ClipError, match="camera 63"):
-        two_camera_clip(Settings(cameras={"cam1": NOWHERE, "cam2": NEITHER}))
+        whole_clip(Settings(cameras={"cam1": NOWHERE, "cam2": NEITHER}))

@@ -29,6 +29,7 @@ from animator.page.door import Entrance, invitation_of
 from animator.page.live import LivePage
 from animator.scene import LEFT, RIGHT
 from common.body.body import POSE_INDEX
+from common.body.observation import Facing
 from common.bus.bus import BusError
 from common.bus.control_messages import Answer
 from common.bus.messages import Performance
@@ -248,6 +249,34 @@ def test_a_browser_shows_the_body_both_views_and_asks_nobody_else(
     assert looking.ask("document.documentElement.scrollWidth <= innerWidth"), "it is too wide"
     own = (page.address, page.address.replace("http", "ws"), "data:", "blob:")
     assert [address for address in looking.tab.asked if not address.startswith(own)] == []
+
+
+@pytest.mark.slow
+def test_the_pictures_of_more_than_two_cameras_are_a_strip(
+    page: LivePage, looking: Looking
+) -> None:
+    """Side by side, and no wider than the page; the third camera alone may be asked about too."""
+    page.set_rig(msgspec.structs.replace(RIG, cameras=(*RIG.cameras, RIG.cameras[0])))
+    seen = snapshot_at(4)
+    assert seen.body is not None
+    sides: tuple[Facing, ...] = ("facade", "flank", "facade")
+    pixels = {
+        name: (*places, places[0])
+        for name in ("joints_px", "extremities_px")
+        for places in [getattr(seen.body, name)]
+    }
+    body = msgspec.structs.replace(
+        seen.body, views="3", score=(0.0, 0.0, 0.8), facing=sides, **pixels
+    )
+    third = msgspec.structs.replace(seen.reports[1], viewer=3)
+    page.show(msgspec.structs.replace(seen, body=body, reports={**seen.reports, 3: third}))
+    assert looking.until("document.body.dataset.drawn")
+    tops = "[...document.querySelectorAll('#views figure')].map((one) => one.offsetTop).join()"
+    (top,) = {*str(looking.ask(tops)).split(",")}
+    assert float(top) > 0.0
+    assert looking.ask("document.querySelectorAll('#views figure').length === 3")
+    assert looking.ask("document.documentElement.scrollWidth <= innerWidth"), "it is too wide"
+    assert not looking.ask("document.querySelector('#front').hidden")
 
 
 @pytest.mark.slow

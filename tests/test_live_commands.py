@@ -112,7 +112,7 @@ def test_each_process_of_a_rig_over_hosts_gets_the_settings_of_its_file(
             "metrics": "runtime.outside.metrics_process.main",
         }.items()
     }
-    instead(monkeypatch, "runtime.live.elsewhere.two_camera_clip", CLIP)
+    instead(monkeypatch, "runtime.live.elsewhere.whole_clip", CLIP)
     measured: Any = object()
     instead(monkeypatch, "runtime.offline.lockstep.measured_before", measured)
     held = instead(monkeypatch, "runtime.live.free_ports.refuse_held_page")

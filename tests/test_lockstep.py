@@ -32,6 +32,7 @@ from runtime.offline.performance import Performance, Prepared, Watch
 from runtime.offline.rig_check import Witness
 from runtime.offline.rig_from_person import Looked
 from runtime.overrides import overridden
+from runtime.steps.method_cameras import refuse_too_many
 from runtime.store.past_run import open_run
 from runtime.store.pose_arrays import poses
 from runtime.store.runs import NO_PERSON_SEEN
@@ -449,7 +450,11 @@ def test_two_of_three_cameras_give_what_a_clip_of_these_two_gives(
     ("mode", "calibrated", "said"),
     [
         ("thesis", True, "three: the thesis's mode is for one camera: add --views 1"),
-        ("paper", True, "three: the paper's mode is for two cameras: add --views 1,2"),
+        (
+            "paper",
+            True,
+            "three: the paper's mode is for two cameras: name two .*--views 1,2",
+        ),
         ("default", False, "three: 3 cameras need a calibration: make one .*--views 1,2"),
         ("default", True, ""),
     ],
@@ -462,6 +467,6 @@ def test_three_cameras_are_for_the_default_mode_and_a_calibration(
     clip = Clip("three", (*VIEWS, third), 1, rig if calibrated else None, Meta())
     if said:
         with pytest.raises(ClipError, match=f"^{said}"):
-            lockstep._refuse_other_modes(clip, METHODS[mode])
+            refuse_too_many(clip, METHODS[mode])
     else:
-        lockstep._refuse_other_modes(clip, METHODS[mode])
+        refuse_too_many(clip, METHODS[mode])

@@ -74,11 +74,11 @@ def test_a_camera_that_is_missing_is_named(sound: Settings, tmp_path: Path) -> N
     assert "cam2.avi" in seen["pictures"].detail
 
 
-def test_a_third_camera_is_named_that_no_live_run_has(sound: Settings, tmp_path: Path) -> None:
-    shutil.copy(tmp_path / "cam2.avi", tmp_path / "cam3.avi")
+def test_three_cameras_without_a_calibration_are_named(sound: Settings, tmp_path: Path) -> None:
+    (tmp_path / "cam3.avi").write_bytes((tmp_path / "cam2.avi").read_bytes() + bytes(1))
     seen = found(sound, tmp_path)
     assert not seen["pictures"].ok
-    assert "a live run has two cameras at most" in seen["pictures"].detail
+    assert "3 cameras need a calibration" in seen["pictures"].detail
 
 
 def test_a_disk_that_is_full_is_named(

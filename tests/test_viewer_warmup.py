@@ -9,6 +9,7 @@ import pytest
 
 from common.body.body import POSE_INDEX
 from common.body.proportions import thesis_bdp
+from common.bus.messages import MOST_VIEWS
 from common.config.settings import Settings
 from common.method import DEFAULT
 from viewer import track
@@ -41,8 +42,8 @@ def test_a_person_in_the_opening_posture_is_stepped_through_with_every_kind_of_g
     assert asked == [(False, False), (True, False), (True, True)]
     guide = shown[1][2]
     assert guide.status == "tracking"
-    assert guide.scale_px_per_m == (42.0, 42.0)
-    assert guide.root_px == ((40.0, 33.0), (40.0, 33.0))
+    assert guide.scale_px_per_m == (42.0,) * MOST_VIEWS
+    assert guide.root_px == ((40.0, 33.0),) * MOST_VIEWS
     assert guide.bdp == thesis_bdp(1.0)
     arms = [guide.pose[POSE_INDEX[f"{side}_shoulder_z"]] for side in "rl"]
     assert arms == [90.0, 270.0]

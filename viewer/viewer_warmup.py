@@ -5,7 +5,7 @@ import numpy as np
 
 from common.body.body import POSE_INDEX, rest_pose
 from common.body.proportions import body_vector, thesis_bdp
-from common.bus.messages import Guide
+from common.bus.messages import MOST_VIEWS, Guide
 from common.raster.kernel import draw_body
 from viewer import track
 from viewer.background.image_stack import median, squares
@@ -35,11 +35,14 @@ def warm_up(state: track.State, size: tuple[int, int]) -> None:
         frame=0,
         captured_s=0.0,
         clock_s=0.0,
-        frames=(0, 0),
+        frames=(0,) * MOST_VIEWS,
         status="tracking",
         bdp=thesis_bdp(1.0),
-        scale_px_per_m=(0.7 * height,) * 2,
-        root_px=((width / 2, 0.55 * height),) * 2,
+        facing=("facade", "flank") * (MOST_VIEWS // 2),
+        scale_px_per_m=(0.7 * height,) * MOST_VIEWS,
+        root_px=((width / 2, 0.55 * height),) * MOST_VIEWS,
+        rest_row_px=(0.0,) * MOST_VIEWS,
+        moves=(False,) * MOST_VIEWS,
         pose=tuple(pose.tolist()),
     )
     measured = msgspec.structs.replace(guide, measured=True)

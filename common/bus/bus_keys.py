@@ -30,9 +30,9 @@ VIEWERS: Final[dict[ViewerNumber, Part]] = dict(
     enumerate((part for part in PARTS if part.startswith("viewer")), start=1)
 )
 PARTS_OF_EVERY_RUN: Final = tuple(
-    part for part in PARTS if part not in ("client", *list(VIEWERS.values())[2:])
+    part for part in PARTS if part not in ("client", *VIEWERS.values())
 )
-"""Parts whose keys are checked before a run starts; a third camera's viewer checks its own."""
+"""Parts of a run beside its viewers."""
 AUTHORITY: Final = "ca.pem"
 """The certificate that signed all others; every host of a run needs it."""
 

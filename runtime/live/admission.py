@@ -9,10 +9,9 @@ from common.config.settings import Settings
 from common.method import METHODS
 from common.video.clip_facts import Clip, whole_rig
 from runtime.live.free_ports import own_session, refuse_held_ports, with_free_endpoint
+from runtime.steps.method_cameras import refuse_too_many
 from runtime.store.recording import refuse_without_library
 
-MOST_LIVE: Final = 2
-"""Cameras of a live run."""
 NO_POSTURE: Final = -1
 """posture_id of a clip that shows none of the postures: free motion, a test of tracking."""
 
@@ -57,8 +56,8 @@ def opened(settings: Settings, name: str) -> Clip:
     from common.video.clips import open_clip
     from runtime.offline.lockstep import measured_before
 
-    refuse_a_third_camera(settings)
     clip = open_clip(settings)
+    refuse_too_many(clip, METHODS[settings.mode])
     clip = msgspec.structs.replace(
         clip,
         name=name or clip.name,
@@ -89,22 +88,4 @@ def refuse_mode(settings: Settings) -> None:
         raise LiveRefused(
             "the thesis's mode is not for live runs: set mode = 'default' or 'paper', or follow "
             "a recorded video with: tritrack single VIDEO --mode thesis"
-        )
-
-
-def refuse_a_third_camera(settings: Settings) -> None:
-    """Refuse cameras other than 1 and 2.
-
-    Raises:
-        LiveRefused: When there are others.
-        ClipError: As `sources_of`.
-    """
-    from common.video.clip_sources import sources_of
-
-    named = sources_of(settings)
-    if any(one.number > MOST_LIVE for one in named):
-        names = ", ".join(one.name for one in named)
-        raise LiveRefused(
-            f"a live run has two cameras at most, cam1 and cam2: there are {names}; leave out the "
-            "others, or track recorded videos of them: tritrack track"
         )

@@ -24,7 +24,7 @@ class Unopened(Decoder):
         return self._camera if is_camera(source) else super().probe(source)
 
 
-def two_camera_clip(settings: Settings) -> Clip:
+def whole_clip(settings: Settings) -> Clip:
     """The clip of the settings, with a camera for each viewer where it is calibrated.
 
     Calibrated cameras are not opened: their pictures have the calibration's size, and come at `fps`
@@ -39,11 +39,11 @@ def two_camera_clip(settings: Settings) -> Clip:
     except CalibrationError as error:
         raise ClipError(str(error)) from error
     if rig is None:
-        return _with_both(open_clip(settings))
+        return _with_all(open_clip(settings))
     fps = settings.fps or rig.fps or 0.0
     with Unopened(VideoInfo(rig.width, rig.height, fps, frames=0)) as decoder:
-        return _with_both(open_clip(settings, decoder))
+        return _with_all(open_clip(settings, decoder))
 
 
-def _with_both(clip: Clip) -> Clip:
+def _with_all(clip: Clip) -> Clip:
     return msgspec.structs.replace(clip, rig=whole_rig(clip))

@@ -9,10 +9,11 @@ from typing import Final
 
 import msgspec
 
-from common.bus.bus_keys import PARTS_OF_EVERY_RUN, refuse_missing
+from common.bus.bus_keys import PARTS_OF_EVERY_RUN, VIEWERS, refuse_missing
 from common.config.part_settings import AUTO, PageSettings
 from common.config.settings import Settings
 from common.endpoint import address_of
+from common.video.clip_sources import sources_of
 
 TCP: Final = re.compile(r"(?:tcp|tls)/(?P<host>[^/]+):(?P<port>\d+)")
 SESSION_BYTES: Final = 8
@@ -30,9 +31,11 @@ def refuse_held_ports(settings: Settings) -> None:
             or the metrics lack a library.
         PageError: When the page's port is taken.
         KeysError: When a part of a live run lacks its keys.
+        ClipError: As `sources_of`.
     """
     if settings.bus.keys:
-        for part in PARTS_OF_EVERY_RUN:
+        viewers = (VIEWERS[one.number] for one in sources_of(settings))
+        for part in (*PARTS_OF_EVERY_RUN, *viewers):
             refuse_missing(Path(settings.bus.keys), part)
     refuse_held_endpoint(settings)
     refuse_held_page(settings)

@@ -22,7 +22,6 @@ from common.video.clip_facts import (
     uprights_of,
     whole_rig,
 )
-from common.video.clip_sources import ClipError
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
 from common.video.frame_cache import FrameCache
@@ -53,6 +52,7 @@ from runtime.offline.rig_check import (
 )
 from runtime.offline.rig_from_person import Looked, by_person, calibration_facts
 from runtime.offline.video_tracking import Heard, VideoInput, follow_clip, unseen
+from runtime.steps.method_cameras import refuse_too_many
 from runtime.steps.together import viewer_of
 from runtime.unfinished.work import Course
 from viewer import track
@@ -134,7 +134,7 @@ def track_clip(
     clip = open_clip(settings, decoders.of[1], views)
     method = method or METHODS[settings.mode]
     alone = len(clip.views) == 1
-    _refuse_other_modes(clip, method)
+    refuse_too_many(clip, method)
     if alone and (method.stick_lifting or (method.proposals and clip.rig is None)):
         return _in_two_passes(clip, settings, method, decoders, course)
     with outside_sources(settings, clip.views) as sources:
@@ -148,20 +148,6 @@ def track_clip(
             followed = _followed(looked, job, began)
             clock = clock_seen(looked.clip, followed.witness)
         return _told(looked, job, followed, clock)
-
-
-def _refuse_other_modes(clip: Clip, method: Method) -> None:
-    """Refuse a method that does not support that many cameras."""
-    several = len(clip.views)
-    if method.stick_lifting and several > 1:
-        raise ClipError(f"{clip.name}: the thesis's mode is for one camera: add --views 1")
-    if not method.proposals and several > 2:
-        raise ClipError(f"{clip.name}: the paper's mode is for two cameras: add --views 1,2")
-    if clip.rig is None and several > 2:
-        raise ClipError(
-            f"{clip.name}: {several} cameras need a calibration: make one (tritrack calibrate "
-            "board), or track two of them without: --views 1,2"
-        )
 
 
 def _as_left(looked: Looked, course: Course) -> Looked:

@@ -6,6 +6,7 @@ from typing import Annotated, Final, Literal
 import msgspec
 import typer
 
+from common.bus.messages import MOST_VIEWS
 from common.config import config_file
 from common.config.part_settings import BusSettings, SettingsError
 from common.config.settings import Settings
@@ -109,17 +110,17 @@ def serve(
 
 def view(
     settings_file: ConfigPath,
-    viewer: Annotated[int, typer.Option(min=1, max=2, help="Which camera this process looks at.")],
+    viewer: Annotated[int, typer.Option(min=1, max=MOST_VIEWS, help="The camera's number.")],
 ) -> None:
     """Run one viewer alone, of a rig spread over hosts.
 
     Example: tritrack view configs/live.toml --viewer 1
     """
-    from runtime.live.admission import refuse_a_third_camera
+    from common.video.clip_sources import refuse_no_source
     from viewer.__main__ import main as viewer_main
 
     settings = live_settings(settings_file)
-    refuse_a_third_camera(settings)  # before the integrator answers
+    refuse_no_source(settings, settings_file)  # before the integrator answers
     viewer_main(settings, viewer)
 
 
@@ -129,11 +130,11 @@ def integrate(settings_file: ConfigPath) -> None:
     Example: tritrack integrate configs/live.toml
     """
     from integrator.__main__ import main as integrator_main
-    from runtime.live.elsewhere import two_camera_clip
+    from runtime.live.elsewhere import whole_clip
     from runtime.offline.lockstep import measured_before
 
     settings = live_settings(settings_file)
-    clip = two_camera_clip(settings)
+    clip = whole_clip(settings)
     integrator_main(settings, msgspec.structs.replace(clip, body=measured_before(settings)))
 
 
@@ -143,10 +144,10 @@ def recognize(settings_file: ConfigPath) -> None:
     Example: tritrack recognize configs/live.toml
     """
     from recognizer.__main__ import main as recognizer_main
-    from runtime.live.elsewhere import two_camera_clip
+    from runtime.live.elsewhere import whole_clip
 
     settings = live_settings(settings_file)
-    clip = two_camera_clip(settings)
+    clip = whole_clip(settings)
     recognizer_main(settings, clip.every / clip.views[0].fps)
 
 
@@ -157,7 +158,7 @@ def metrics(settings_file: ConfigPath) -> None:
 
     Example: tritrack metrics configs/live.toml
     """
-    from runtime.live.elsewhere import two_camera_clip
+    from runtime.live.elsewhere import whole_clip
     from runtime.live.free_ports import refuse_held_metrics
     from runtime.live.process_table import names_of
 
@@ -167,7 +168,7 @@ def metrics(settings_file: ConfigPath) -> None:
     refuse_held_metrics(settings.metrics)
     from runtime.outside.metrics_process import main as metrics_main
 
-    metrics_main(settings, names_of(two_camera_clip(settings)))
+    metrics_main(settings, names_of(whole_clip(settings)))
 
 
 def animate(settings_file: ConfigPath) -> None:

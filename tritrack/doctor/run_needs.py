@@ -7,9 +7,10 @@ from pathlib import Path
 from typing import Final
 
 from common.config.settings import Settings
+from common.method import METHODS
 from common.video.clips import open_clip
-from runtime.live.admission import refuse_a_third_camera
 from runtime.live.free_ports import refuse_held_endpoint, refuse_held_metrics, refuse_held_page
+from runtime.steps.method_cameras import refuse_too_many
 from tritrack.doctor.installation import Finding, refused
 
 LEAST_BYTES: Final = 1 << 30
@@ -45,8 +46,8 @@ def _looked(what: str, look: Callable[[], str | None]) -> Finding:
 
 def _pictures(settings: Settings) -> str:
     """Each camera or video is opened."""
-    refuse_a_third_camera(settings)
     clip = open_clip(settings)
+    refuse_too_many(clip, METHODS[settings.mode])
     views = ", ".join(
         f"view {view.number}: {view.source_size[0]}x{view.source_size[1]}, {view.fps:.4g} a second"
         for view in clip.views

@@ -38,6 +38,7 @@ const heard = {
     room.setCameras(told);
     if (views.length !== told.cameras.length) {
       at("views").replaceChildren();
+      document.body.classList.toggle("strip", told.cameras.length > 2);
       views = told.cameras.map((_, i) => new View(greeting.cameras[i], at("views")));
     }
     refresh();
@@ -100,7 +101,7 @@ function show(frame) {
   views.forEach((view, i) => view.show(frame.views[i] ?? null, frame.confidence, greeting));
   room.show(frame.solids);
   showPosture(frame.posture);
-  actions.alone("12".includes(frame.from_views));
+  actions.alone(/^\d$/.test(frame.from_views));
   showTrust(frame.trust);
   showStatus(history.over ? "over" : frame.status, history.over ? "the run is over: this is its recording" : history.following ? frame.words : `looking back; the run goes on`);
   const scrub = at("scrub");
