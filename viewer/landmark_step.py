@@ -1,11 +1,9 @@
 """A viewer's landmarks, frame by frame: where the network looks, when, and at whom."""
 
 import math
+from itertools import permutations
 from operator import itemgetter
 from typing import Final, NamedTuple
-
-import numpy as np
-from scipy.optimize import linear_sum_assignment
 
 from common.body.observation import Landmarks, Pixel
 from common.config.settings import Settings
@@ -137,14 +135,20 @@ def _owners(
     places = {track.number: corners_of(track.landmarks) for track in people.tracks}
     if not places and is_person(followed.landmarks):
         places = {people.followed: corners_of(followed.landmarks)}
-    shares = np.array(
-        [[overlap(each.corners_px, place) for place in places.values()] for each in detected]
-    ).reshape(len(detected), len(places))
-    owners: list[int | None] = [None] * len(detected)
-    for row, column in zip(*linear_sum_assignment(shares, maximize=True), strict=True):
-        if shares[row, column] >= IS_OF:
-            owners[row] = list(places)[column]
-    return owners
+    width = max(len(detected), len(places))
+    shares = [
+        [overlap(each.corners_px, place) for each in detected] + [0.0] * (width - len(detected))
+        for place in places.values()
+    ]
+    chosen = max(  # of few people: scipy's assignment would cost a quarter of a second to import
+        permutations(range(width), len(places)),
+        key=lambda columns: sum(of[column] for of, column in zip(shares, columns, strict=True)),
+    )
+    owners: list[int | None] = [None] * width
+    for number, of_place, column in zip(places, shares, chosen, strict=True):
+        if of_place[column] >= IS_OF:
+            owners[column] = number
+    return owners[: len(detected)]
 
 
 def _is_sure_at(look: LandmarkResult | None, window: Window) -> bool:

@@ -4,7 +4,6 @@ from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import least_squares
 
 from calibration.person.rig_evidence import Evidence, Sides, own_moments
 from calibration.person.rig_residuals import UNSEEN, Explained, explained, misfits
@@ -45,6 +44,8 @@ def fitted(start: Vector, evidence: Evidence, free: Sides, rounds: int, steps: i
         rounds: How often the exchanged sides are decided again.
         steps: Iterations of the fit in each round.
     """
+    from scipy.optimize import least_squares
+
     guess = start.copy()
 
     def with_free(values: Vector) -> Vector:

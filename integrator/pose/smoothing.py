@@ -1,11 +1,8 @@
 """Smoothed angles: a constant-velocity Kalman filter over all of them, across the seam at 180."""
 
-from functools import lru_cache
 from typing import Final, NamedTuple
 
 import numpy as np
-from filterpy.common import Q_discrete_white_noise
-from filterpy.kalman import predict, update
 
 from common.body.body import Vector
 
@@ -33,9 +30,10 @@ class State(NamedTuple):
     settings: Smoothing
     period_s: float
     x: Vector
-    """(2 n,) the angles, degrees, and then their speeds, degrees a second."""
+    """(2, n) the angles, degrees, and their speeds, degrees a second."""
     P: Vector | None
-    """(2 n, 2 n) their covariance; None until the first measurement."""
+    """(2, 2) covariance of an angle and its speed, the same for all; None until the first
+    measurement."""
 
 
 def init(n: int, period_s: float, settings: Smoothing = Smoothing()) -> State:
@@ -46,7 +44,7 @@ def init(n: int, period_s: float, settings: Smoothing = Smoothing()) -> State:
         period_s: Time between frames; the default of a step's time.
         settings: Noise parameters.
     """
-    return State(settings, period_s, np.zeros(2 * n), None)
+    return State(settings, period_s, np.zeros((2, n)), None)
 
 
 def step(state: State, angles_deg: Vector | None, dt_s: float) -> tuple[State, Vector, Vector]:
@@ -67,35 +65,26 @@ def step(state: State, angles_deg: Vector | None, dt_s: float) -> tuple[State, V
     """
     if state.P is None:
         if angles_deg is None:
-            unknown = np.full(len(state.x) // 2, np.nan)
+            unknown = np.full(state.x.shape[1], np.nan)
             return state, unknown, unknown.copy()
         state = _started(state, angles_deg)
     else:
         state = _stepped(state, state.P, angles_deg, dt_s)
-    smooth_deg, speed_deg_s = np.split(state.x.copy(), 2)
+    smooth_deg, speed_deg_s = state.x.copy()
     return state, smooth_deg, speed_deg_s
 
 
 def _started(state: State, angles_deg: Vector) -> State:
     variances = (state.settings.noise_deg**2, START_SPEED_DEG_S**2)
-    x = np.concatenate([angles_deg, np.zeros_like(angles_deg)])
-    return state._replace(x=x, P=np.diag(np.repeat(variances, len(angles_deg))))
+    return state._replace(x=np.stack([angles_deg, np.zeros_like(angles_deg)]), P=np.diag(variances))
 
 
 def _stepped(state: State, before: Vector, angles_deg: Vector | None, dt_s: float) -> State:
-    n = len(state.x) // 2
-    x, P = predict(state.x, before, *_motion(n, dt_s, state.settings))
+    moved = np.array([[1.0, dt_s], [0.0, 1.0]])
+    pushed = state.settings.acceleration_deg_s2 * np.array([0.5 * dt_s**2, dt_s])
+    x, P = moved @ state.x, moved @ before @ moved.T + np.outer(pushed, pushed)
     if angles_deg is not None:
-        x[:n] += 360.0 * np.round((angles_deg - x[:n]) / 360.0)
-        noise = state.settings.noise_deg**2 * np.eye(n)
-        x, P = update(x, P, angles_deg, noise, np.eye(n, 2 * n))
+        x[0] += 360.0 * np.round((angles_deg - x[0]) / 360.0)
+        gain = P[:, 0] / (P[0, 0] + state.settings.noise_deg**2)
+        x, P = x + np.outer(gain, angles_deg - x[0]), P - np.outer(gain, P[0])
     return state._replace(x=x, P=P)
-
-
-@lru_cache(maxsize=16)
-def _motion(n: int, dt_s: float, settings: Smoothing) -> tuple[Vector, Vector]:
-    """The prediction at constant speed, and the covariance added by an unknown acceleration that
-    is constant during a step: (2 n, 2 n) each."""
-    moved, same = np.array([[1.0, dt_s], [0.0, 1.0]]), np.eye(n)
-    noise = Q_discrete_white_noise(2, dt_s, settings.acceleration_deg_s2**2)
-    return np.kron(moved, same), np.kron(noise, same)

@@ -4,7 +4,6 @@ import math
 from typing import Final, NamedTuple
 
 import numpy as np
-from filterpy.kalman import predict, update
 from numpy.typing import NDArray
 
 from common.body.body import JOINT_NAMES, Vector
@@ -62,6 +61,8 @@ def step(
     Returns:
         The new memory, and the joints (15, 3).
     """
+    from filterpy.kalman import predict, update  # a second's import: two views need none
+
     off_m = joints_m - eye_m
     range_m = np.linalg.norm(off_m, axis=1)
     rays = off_m / range_m[:, np.newaxis]
