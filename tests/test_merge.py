@@ -517,7 +517,7 @@ def test_who_comes_has_a_filter_of_their_own_and_who_stays_keeps_theirs() -> Non
         state = instants(0.2)._replace(person=Waiting(ever_confirmed=believed))
         comes = merge._following(state, known, found)
         assert (comes.smooth.period_s, comes.smooth.P) == (0.2, None)
-        assert len(comes.smooth.x) == 2 * len(ANGLE_NAMES)
+        assert comes.smooth.x.shape == (2, len(ANGLE_NAMES))
         assert (comes.doubted, comes.ever_confirmed) == (0, believed)
 
 
