@@ -26,7 +26,7 @@ def test_a_demo_that_names_another_posture_has_failed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Exit 0 only on success: it runs the whole system, and it checks what comes out."""
-    monkeypatch.setattr(demo, "made_clip", lambda folder: folder / "clip")
+    monkeypatch.setattr(demo, "made_clip", lambda folder, _: folder / "clip")
     monkeypatch.setattr(demo, "live", lambda *_: {"posture": "squat"})
     with pytest.raises(demo.DemoFailed, match="performed raise_right_lateral, named squat"):
         demo.run_demo(tmp_path, False, Console(quiet=True))
@@ -91,7 +91,7 @@ def test_a_demo_runs_its_clip_with_pictures_on_a_page_if_one_is_wanted(
         asked.append((settings, out))
         return {"posture": demo.POSTURE}
 
-    monkeypatch.setattr(demo, "made_clip", lambda folder: folder / "clip")
+    monkeypatch.setattr(demo, "made_clip", lambda folder, _: folder / "clip")
     monkeypatch.setattr(demo, "live", live)
     said = Console(file=io.StringIO(), width=200)
     for page, wait in ((True, False), (True, True), (False, True)):
@@ -125,3 +125,6 @@ def test_the_demos_clip_is_of_a_person_of_no_training_set_with_its_rig(
     plain = performance(someone, demo.POSTURE, demo.TAKE)
     assert len(motion.joints_m) - len(plain.joints_m) > 4 * 15, "again and again"
     assert len(motion.joints_m) / 15 == pytest.approx(demo.MOTION_S, rel=0.5)
+    demo.made_clip(tmp_path, 3)
+    assert load_rig(tmp_path / "calibration.json").cameras[:2] == rig.cameras
+    assert len(asked[1][3].rig.cameras) == 3

@@ -94,8 +94,8 @@ def test_the_demo_is_shown_unless_it_is_told_not_to(
     assert (done.last[:2], done.last[3]) == ((Path("new"), False), False)
     assert refused.last == (Path("new"),)
     assert "posture: squat; written to new" in said.output
-    typed(demo, "--force")
-    assert (done.last[:2], done.last[3]) == ((Path("runs/demo"), True), True)
+    typed(demo, "--force", "--cameras", 3)
+    assert (done.last[:2], done.last[3:]) == ((Path("runs/demo"), True), (True, 3))
     assert len(refused.given) == 1
 
 

@@ -15,7 +15,7 @@ from runtime.live.session import live
 from runtime.store.other_run import refuse_other, run_of, run_told
 from synth.motion.motions import performance
 from synth.person.people import person
-from synth.picture.exposure import default_rig
+from synth.picture.random_rig import rig_around
 from synth.write import Filming, clip_name, write_clip, write_rig
 
 PERFORMER_SEED: Final = 90_001
@@ -31,9 +31,9 @@ class DemoFailed(RuntimeError):
     """The demo ran with a wrong result; the text names it."""
 
 
-def made_clip(folder: Path) -> Path:
+def made_clip(folder: Path, cameras: int = 2) -> Path:
     """The demo's clip with its calibration, written into a folder."""
-    rig, someone = default_rig(*SIZE), person(PERFORMER_SEED)
+    rig, someone = rig_around(SIZE, cameras, PERFORMER_SEED), person(PERFORMER_SEED)
     clip = folder / clip_name(someone, POSTURE, TAKE)
     write_clip(
         clip,
@@ -58,7 +58,7 @@ def refuse_other_than_demo(out: Path) -> None:
         refuse_other(out, run_of("demo", [clip]))
 
 
-def run_demo(out: Path, page: bool, console: Console, wait: bool = True) -> Facts:
+def run_demo(out: Path, page: bool, console: Console, wait: bool = True, cameras: int = 2) -> Facts:
     """Render a clip, run the whole system on it, and check the result.
 
     Args:
@@ -66,13 +66,14 @@ def run_demo(out: Path, page: bool, console: Console, wait: bool = True) -> Fact
         page: Whether the live page shows it.
         console: As for `live`.
         wait: Whether the clip waits until the page is opened.
+        cameras: Number of cameras around the person.
 
     Raises:
         DemoFailed: When another posture was recognised than performed.
     """
     with tempfile.TemporaryDirectory(prefix="tritrack-demo-") as folder:
         console.print(f"making a person who performs {POSTURE} ...")
-        clip = made_clip(Path(folder))
+        clip = made_clip(Path(folder), cameras)
         settings = free_settings(Settings(clip=str(clip), pictures=True))
         port = settings.page.port if page else 0
         settings = msgspec.structs.replace(settings, page=PageSettings(port, wait))

@@ -28,14 +28,17 @@ def demo(
     out: Out = Path("runs/demo"),
     page: Annotated[bool, typer.Option(help="Show it on the live page too.")] = True,
     wait: Wait = True,
+    cameras: Annotated[
+        int, typer.Option(min=1, max=MOST_VIEWS, help="How many cameras look at the person.")
+    ] = 2,
     force: Force = False,
     json_wanted: JsonWanted = False,
 ) -> None:
     """Run the whole system on a synthetic person.
 
-    Two viewers, integrator, recognizer and page work as in a live run.
+    Viewers, integrator, recognizer and page work as in a live run.
 
-    Example: tritrack demo
+    Example: tritrack demo --cameras 3
     """
     if page:
         refuse_without("page", "websockets")
@@ -43,7 +46,7 @@ def demo(
 
     if not force:
         refuse_other_than_demo(out)
-    facts = run_demo(out, page, console, wait)
+    facts = run_demo(out, page, console, wait, cameras)
     tell(facts, json_wanted, f"posture: {facts['posture']}; written to {out}")
 
 
