@@ -87,6 +87,7 @@ SYSTEM = {
     "system_meeting": "how the processes of a run wait for each other",
     "system_viewer": "the viewer's loop, and how it starts: frames, guides and clock by hand",
     "system_viewer_frame": "one frame of a viewer before a background of its own",
+    "system_three_cameras": "live runs of three cameras, which lose one or two and get them back",
     "system_wheel": "the wheel, installed beside files of the same names",
     "system_namespaces": "a room on four simulated hosts: their clocks, slow, lossy and cut cables",
     "system_seeds": "what a seed makes of people, motions, rigs, rooms and pictures",
