@@ -24,7 +24,7 @@ FPS: Final = 15.0
 """The paper's frame rate (P1)."""
 JPEG_QUALITY: Final = 95
 Packed = NDArray[np.uint8]
-"""A mask packed by `np.packbits(mask, axis=1)`."""
+"""Masks packed by `np.packbits(mask, axis=-1)`."""
 
 PHASES: Final = ("empty", "tpose", "transition", "motion")
 ALONE: Final = ("free", "fall", "stream")
@@ -90,7 +90,7 @@ def write_set(
     _refuse_what_cannot_be(wanted, size, names)
     rig = rig_around(size, cameras, seed)
     out.mkdir(parents=True, exist_ok=True)
-    _refuse_to_lose(out / "calibration.json", rig)
+    refuse_to_lose(out / "calibration.json", rig)
     write_rig(out / "calibration.json", rig)
     folders = []
     jobs = list(itertools.product(range(performers), range(1, takes + 1), names))
@@ -130,14 +130,14 @@ def write_clip(folder: Path, someone: Person, motion: Motion, filming: Filming, 
     """
     rig, room_seed, seed = filming
     folder.mkdir(parents=True, exist_ok=True)
-    masks = _film(folder, render(someone, motion, rig, room_seed, seed), rig, motion.fps)
-    meta = _meta(someone, motion, filming, take)
+    masks = filmed(folder, render(someone, motion, rig, room_seed, seed), rig, motion.fps)
+    meta = meta_of(someone, motion, filming, take)
     (folder / "meta.json").write_text(json.dumps(meta, indent=1) + "\n")
     gain = exposures(len(masks), len(motion.phase), seed, motion.fps)
     np.savez_compressed(
         folder / "truth.npz",
         allow_pickle=False,
-        **_truth(someone, motion, rig, take),
+        **truth_of(someone, motion, rig, take),
         **masks,
         gain=gain.astype(np.float32),
     )
@@ -152,14 +152,18 @@ def _rig_text(rig: Rig) -> bytes:
     return msgspec.json.format(msgspec.json.encode(rig), indent=1)
 
 
-def _refuse_to_lose(path: Path, rig: Rig) -> None:
-    """An existing calibration may belong to cameras that recorded other clips beside it."""
+def refuse_to_lose(path: Path, rig: Rig) -> None:
+    """An existing calibration may belong to cameras that recorded other clips beside it.
+
+    Raises:
+        SynthError: Then.
+    """
     if path.exists() and path.read_bytes() != _rig_text(rig):
         raise SynthError(f"{path} is of other cameras, whose clips it serves: name another --out")
 
 
-def _film(folder: Path, shots: Iterable[Shot], rig: Rig, fps: float) -> dict[str, Packed]:
-    """Write every camera's video; their masks of all frames, packed, (n, h, bytes) each."""
+def filmed(folder: Path, shots: Iterable[Shot], rig: Rig, fps: float) -> dict[str, Packed]:
+    """Write every camera's video; their masks of all frames, packed along their last axis."""
     names = [camera.name for camera in rig.cameras]
     videos = [_writer(folder / f"{name}.avi", rig, fps) for name in names]
     masks: dict[str, list[Packed]] = {f"mask_{name}": [] for name in names}
@@ -168,7 +172,7 @@ def _film(folder: Path, shots: Iterable[Shot], rig: Rig, fps: float) -> dict[str
             for video, frame in zip(videos, shot.frames, strict=True):
                 video.write(frame)
             for packed, mask in zip(masks.values(), shot.masks, strict=True):
-                packed.append(np.packbits(mask, axis=1))
+                packed.append(np.packbits(mask, axis=-1))
     finally:
         for video in videos:
             video.release()
@@ -184,7 +188,8 @@ def _writer(path: Path, rig: Rig, fps: float) -> cv2.VideoWriter:
     return film
 
 
-def _meta(someone: Person, motion: Motion, filming: Filming, take: int) -> dict[str, object]:
+def meta_of(someone: Person, motion: Motion, filming: Filming, take: int) -> dict[str, object]:
+    """What `meta.json` says of a person's take."""
     counts = np.bincount(motion.phase, minlength=4).tolist()
     return {
         "performer": someone.name,
@@ -204,13 +209,13 @@ def _meta(someone: Person, motion: Motion, filming: Filming, take: int) -> dict[
     }
 
 
-def _truth(someone: Person, motion: Motion, rig: Rig, take: int) -> dict[str, np.ndarray]:
+def truth_of(someone: Person, motion: Motion, rig: Rig, take: int) -> dict[str, np.ndarray]:
     """The arrays of `truth.npz` other than those from the videos."""
     count = len(motion.phase)
     return {
         "joints3d": motion.joints_m.astype(np.float32),
         "joint_names": np.array(JOINTS),
-        **{f"joints2d_{camera.name}": _projected(camera, motion) for camera in rig.cameras},
+        **{f"joints2d_{camera.name}": projected(camera, motion) for camera in rig.cameras},
         "mask_shape": np.array([rig.height, rig.width]),
         "phase": motion.phase,
         "present": motion.present,
@@ -230,7 +235,8 @@ def _truth(someone: Person, motion: Motion, rig: Rig, take: int) -> dict[str, np
     }
 
 
-def _projected(camera: Camera, motion: Motion) -> np.ndarray:
+def projected(camera: Camera, motion: Motion) -> np.ndarray:
+    """Places of the joints in a camera's picture, (n, 20, 2); NaN while the room is empty."""
     pixels = project(camera, motion.joints_m.reshape(-1, 3))
     return pixels.reshape(len(motion.phase), -1, 2).astype(np.float32)
 

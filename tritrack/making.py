@@ -9,23 +9,26 @@ from common.config.part_settings import SettingsError
 from common.config.picture_size import size_of
 from runtime.terminal import bar
 from synth.motion.motions import LASTS_S, POSTURES
+from synth.scene.scene_clips import SceneSet, write_scenes
 from synth.write import ClipSet, SynthError, write_set
 
 
 def make_clips(
     out: Path,
-    wanted: ClipSet,
+    wanted: ClipSet | SceneSet,
     size: str,
     console: Console,
 ) -> list[Path]:
-    """Write clips with ground truth, with a progress bar; returns their folders.
+    """Write clips or scenes with ground truth, with a progress bar; returns their folders.
 
     Raises:
         SettingsError: When the size or a posture's name is invalid, or free motion is requested as
         a posture.
         SynthError: When a clip cannot be written: no space, no permission.
     """
-    _refuse_postures(wanted.motion, wanted.postures)
+    if isinstance(wanted, ClipSet):
+        _refuse_postures(wanted.motion, wanted.postures)
+        wanted = wanted._replace(postures=wanted.postures or POSTURES)
     try:
         width_height = size_of(size)
     except ValueError as error:
@@ -33,12 +36,13 @@ def make_clips(
     try:
         with bar(console) as progress:
             task = progress.add_task("rendering", total=None)
-            return write_set(
-                out,
-                wanted._replace(postures=wanted.postures or POSTURES),
-                width_height,
-                lambda done, due: progress.update(task, completed=done, total=due),
-            )
+
+            def tell(done: int, due: int) -> None:
+                progress.update(task, completed=done, total=due)
+
+            if isinstance(wanted, SceneSet):
+                return write_scenes(out, wanted, width_height, tell)
+            return write_set(out, wanted, width_height, tell)
     except OSError as error:
         raise SynthError(unwritten(out, error, "name another --out")) from error
 

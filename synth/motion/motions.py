@@ -219,6 +219,7 @@ _FIVE: Final[dict[str, Movement]] = {
     "free": "free",
     "fall": "free",
     "stream": "free",
+    "scene": "free",
 }
 
 

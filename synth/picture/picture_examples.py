@@ -190,5 +190,5 @@ def _drawn(shown: Shown, pixels: Vector, depths: Vector, shaded: Vector) -> NDAr
         colours,
     )
     body = np.zeros((SIDE_PX, SIDE_PX, 4), np.float32)
-    gather(nearest, colours, FINER, body, 1.0, np.empty((SIDE_PX, SIDE_PX), np.float32))
+    gather(nearest > 0.0, colours, FINER, body, 1.0)
     return body

@@ -209,24 +209,22 @@ def _second(kind: float, pitch: float, x: float, y: float, z: float) -> bool:
 
 @compiled
 def gather(
-    nearest: Floats,
+    drawn: NDArray[np.bool_],
     colours: NDArray[np.float32],
     scale: int,
     body: NDArray[np.float32],
     weight: float,
-    own: NDArray[np.float32],
 ) -> None:
     """Average `scale` x `scale` samples into pixels.
 
     Args:
-        nearest: (h scale, w scale), 0 where nothing was drawn.
+        drawn: (h scale, w scale), True where something was drawn.
         colours: (h scale, w scale, 3).
         scale: Samples per pixel, each way.
         body: (h, w, 4) colours times coverage, and coverage; `weight` times this drawing is added.
         weight: Share of the exposure.
-        own: (h, w) coverage of this drawing alone, written.
     """
-    height, width = own.shape
+    height, width = body.shape[:2]
     share = 1.0 / (scale * scale)
     for row in range(height):
         for column in range(width):
@@ -234,12 +232,11 @@ def gather(
             red, green, blue = 0.0, 0.0, 0.0
             for i in range(row * scale, (row + 1) * scale):
                 for j in range(column * scale, (column + 1) * scale):
-                    if nearest[i, j] > 0.0:
+                    if drawn[i, j]:
                         count += 1
                         blue += colours[i, j, 0]
                         green += colours[i, j, 1]
                         red += colours[i, j, 2]
-            own[row, column] = count * share
             if count:
                 body[row, column, 0] += weight * share * blue
                 body[row, column, 1] += weight * share * green

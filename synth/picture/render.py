@@ -1,6 +1,6 @@
-"""The renderer: a performance in a room, in each camera's picture, with exact silhouettes."""
+"""The renderer: people in a room, in each camera's picture, with exact silhouettes."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from typing import Final, NamedTuple
 
@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import Vector
-from common.raster.similarity import Mask
-from common.rig.camera import Camera, Rig, project
+from common.rig.camera import Rig, project
 from common.video.pictures import Image
 from synth.motion.motions import Motion
 from synth.person.mesh import Mesh, body_mesh
@@ -31,8 +30,8 @@ KEY_DARK, FOOT_DARK = 0.2, 0.3
 BLURS_PX: Final = (7, 15)
 """Blur of those two shadows, in pixels of the lamp's picture."""
 
-Body = tuple[NDArray[np.float32], Mask]
-"""Colours times coverage, and coverage, (h, w, 4); the exact mask (h, w)."""
+Coverage = tuple[NDArray[np.float32], NDArray[np.bool_]]
+"""Colours times coverage, and coverage, (h, w, 4); the exact mask of each person (people, h, w)."""
 
 
 class Shot(NamedTuple):
@@ -40,24 +39,44 @@ class Shot(NamedTuple):
 
     frames: tuple[Image, ...]
     """(h, w, 3) per camera: blue, green, red."""
-    masks: tuple[Mask, ...]
-    """(h, w) per camera: True where the person covers half of a pixel or more at the frame's
-    time."""
+    masks: tuple[NDArray[np.bool_], ...]
+    """Per camera True where a person covers half of a pixel or more at the frame's time: (h, w) of
+    one person; (people, h, w) of several, what others hide left out."""
+
+
+class Part(NamedTuple):
+    """A person and their motion in a scene."""
+
+    someone: Person
+    motion: Motion
+
+
+class _Actor(NamedTuple):
+    """A person's surface in all frames."""
+
+    mesh: Mesh
+    palette: NDArray[np.float64]
+    pattern: tuple[float, float, float]
+    places: NDArray[np.float64]
+    """(n, v, 3) of the vertices, world metres."""
+    present: NDArray[np.bool_]
+    smeared: NDArray[np.bool_]
+    """(n,) whether a frame has motion blur."""
 
 
 class _Scene(NamedTuple):
     """The constant part of a clip."""
 
-    mesh: Mesh
-    palette: NDArray[np.float64]
-    pattern: tuple[float, float, float]
+    cast: tuple[_Actor, ...]
     room: Room
     rig: Rig
     scale: int
+    solid: bool
+    """Whether the room's walls and furniture hide people behind them."""
 
 
 def render(someone: Person, motion: Motion, rig: Rig, room_seed: int, seed: int) -> Iterator[Shot]:
-    """The frames of a performance.
+    """The frames of a performance, whose masks are (h, w): one person before the room.
 
     Args:
         someone: The performer.
@@ -66,28 +85,48 @@ def render(someone: Person, motion: Motion, rig: Rig, room_seed: int, seed: int)
         room_seed: Seed of the room.
         seed: Seed of the differences between takes: noise, exposure.
     """
+    scene = _scene_of((Part(someone, motion),), rig, room_seed, solid=False)
+    for frames, masks in _shots(scene, motion.fps, seed):
+        yield Shot(frames, tuple(mask[0] for mask in masks))
+
+
+def render_scene(parts: Sequence[Part], rig: Rig, room_seed: int, seed: int) -> Iterator[Shot]:
+    """The frames of several people in a room: what is nearer hides what is farther.
+
+    Args:
+        parts: One or more; their motions have the same frames.
+        rig: As for `render`.
+        room_seed: As for `render`.
+        seed: As for `render`.
+    """
+    return _shots(_scene_of(parts, rig, room_seed, solid=True), parts[0].motion.fps, seed)
+
+
+def _scene_of(parts: Sequence[Part], rig: Rig, room_seed: int, *, solid: bool) -> _Scene:
     scale = max(2, round(FINE_PX / rig.width))
-    look = someone.look
+    return _Scene(tuple(map(_actor, parts)), room_of(room_seed, rig), rig, scale, solid)
+
+
+def _actor(part: Part) -> _Actor:
+    look, mesh = part.someone.look, body_mesh(part.someone)
     pattern = (float(PATTERNS.index(look.pattern)), look.pitch_m, float(MATERIAL["shirt"]))
-    scene = _Scene(body_mesh(someone), palette(look), pattern, room_of(room_seed, rig), rig, scale)
-    places = _placed(scene.mesh, motion)
-    cameras = len(rig.cameras)
-    gains, smeared = exposures(cameras, len(motion.phase), seed, motion.fps), blurred(motion)
+    places, motion = _placed(mesh, part.motion), part.motion
+    return _Actor(mesh, palette(look), pattern, places, motion.present, blurred(motion))
+
+
+def _shots(scene: _Scene, fps: float, seed: int) -> Iterator[Shot]:
+    rig, cameras, count = scene.rig, len(scene.rig.cameras), len(scene.cast[0].places)
+    gains = exposures(cameras, count, seed, fps)
     rng = np.random.default_rng([seed, 3])
     grain = rng.normal(0.0, NOISE, (rig.height + 61, rig.width + 61, 3)).astype(np.float32)
-    empty = _nobody(rig)
-    for i in range(len(motion.phase)):
+    for i in range(count):
         corners = rng.integers(0, 61, (cameras, 2))
-        if motion.present[i]:
-            moments = _moments(places, i, bool(smeared[i]))
-            bodies, dark = _bodies(scene, moments), _darkness(scene, places[i])
-        else:
-            bodies, dark = empty
-        views = [
-            _exposed(scene, n, bodies[n], dark[n], gains[n, i], _grain_of(grain, corners[n], rig))
+        bodies, lit = _bodies(scene, i), _light(scene, i)
+        frames = [
+            _exposed(scene, n, bodies[n], lit[n], gains[n, i], _grain_of(grain, corners[n], rig))
             for n in range(cameras)
         ]
-        yield Shot(tuple(frame for frame, _ in views), tuple(mask for _, mask in views))
+        yield Shot(tuple(frames), tuple(masks for _, masks in bodies))
 
 
 @lru_cache(maxsize=2)
@@ -119,8 +158,9 @@ def _placed(mesh: Mesh, motion: Motion) -> NDArray[np.float64]:
     return places
 
 
-def _moments(places: NDArray[np.float64], i: int, smeared: bool) -> list[NDArray[np.float64]]:
+def _moments(actor: _Actor, i: int, smeared: bool) -> list[NDArray[np.float64]]:
     """The surface at the frame's time, then before and after it while the shutter is open."""
+    places = actor.places
     if not smeared:
         return [places[i]]
     before, after = places[max(i - 1, 0)], places[min(i + 1, len(places) - 1)]
@@ -128,55 +168,82 @@ def _moments(places: NDArray[np.float64], i: int, smeared: bool) -> list[NDArray
     return [places[i] + SHUTTER * share * frame for share in (0.0, -0.4, -0.2, 0.2, 0.4)]
 
 
-def _bodies(scene: _Scene, moments: list[NDArray[np.float64]]) -> list[Body]:
-    """For each camera the person's colours with coverage (h, w, 4) and the exact mask."""
-    mesh, light = scene.mesh, lit_from(scene.room.lamps[0])
-    shaded = np.empty(len(mesh.shares))
-    shade(moments[0], mesh.faces, light, np.empty_like(moments[0]), shaded)
-    found = []
-    for camera in scene.rig.cameras:
-        body = np.zeros((scene.rig.height, scene.rig.width, 4), np.float32)
-        mask = np.zeros((scene.rig.height, scene.rig.width), bool)
-        for k, places in enumerate(moments):
-            own, box = _drawn(scene, camera, places, shaded, body, 1.0 / len(moments))
+class _Drawing(NamedTuple):
+    """A person who is drawn in one frame."""
+
+    number: int
+    """Place in the cast, from 1."""
+    actor: _Actor
+    moments: list[NDArray[np.float64]]
+    shaded: Vector
+    """(v,) brightness of the vertices."""
+
+
+def _bodies(scene: _Scene, i: int) -> list[Coverage]:
+    """For each camera the people's colours with coverage (h, w, 4) and the exact masks."""
+    drawings, rig = _drawings(scene, i), scene.rig
+    shape, found = (rig.height, rig.width), []
+    for n in range(len(rig.cameras)):
+        body = np.zeros((*shape, 4), np.float32)
+        masks = np.zeros((len(scene.cast), *shape), np.bool_)
+        moments = len(drawings[0].moments) if drawings else 0
+        for k in range(moments):
+            box, whose = _drawn(scene, n, drawings, k, body)
             if k == 0:
-                mask[box] = own >= 0.5
-        found.append((body, mask))
+                masks[:, *box] = _covered(whose, len(scene.cast), scene.scale)
+        found.append((body, masks))
+    return found
+
+
+def _drawings(scene: _Scene, i: int) -> list[_Drawing]:
+    """Who is in the room in frame i; one shutter for all."""
+    there = [(number, actor) for number, actor in enumerate(scene.cast, 1) if actor.present[i]]
+    smeared, light = any(actor.smeared[i] for _, actor in there), lit_from(scene.room.lamps[0])
+    found = []
+    for number, actor in there:
+        moments, shaded = _moments(actor, i, smeared), np.empty(len(actor.mesh.shares))
+        shade(moments[0], actor.mesh.faces, light, np.empty_like(moments[0]), shaded)
+        found.append(_Drawing(number, actor, moments, shaded))
     return found
 
 
 def _drawn(
-    scene: _Scene,
-    camera: Camera,
-    places: NDArray[np.float64],
-    shaded: Vector,
-    body: NDArray[np.float32],
-    weight: float,
-) -> tuple[NDArray[np.float32], tuple[slice, slice]]:
-    """Add one drawing to `body`; returns its coverage, and its box in the picture."""
-    mesh, scale = scene.mesh, scene.scale
-    pixels = project(camera, places)
-    depths = places @ np.array(camera.R)[2] + camera.t[2]
-    box = _box(pixels, scene.rig)
-    high, wide = (side.stop - side.start for side in box)
-    nearest = np.zeros((high * scale, wide * scale))
-    colours = np.empty((high * scale, wide * scale, 3), np.float32)
-    fine = (pixels - [box[1].start, box[0].start]) * scale
-    draw(
-        fine,
-        depths,
-        shaded,
-        mesh.vertices_m,
-        mesh.faces,
-        mesh.materials,
-        scene.palette,
-        scene.pattern,
-        nearest,
-        colours,
-    )
-    own = np.empty((high, wide), np.float32)
-    gather(nearest, colours, scale, body[box], weight, own)
-    return own, box
+    scene: _Scene, n: int, drawings: list[_Drawing], k: int, body: NDArray[np.float32]
+) -> tuple[tuple[slice, slice], NDArray[np.uint8]]:
+    """Add moment k of all people to `body`; returns its box in the picture, and whose each of its
+    samples is."""
+    camera, scale = scene.rig.cameras[n], scene.scale
+    pixels = [project(camera, drawing.moments[k]) for drawing in drawings]
+    box = _box(np.concatenate(pixels), scene.rig)
+    high, wide = (scale * (side.stop - side.start) for side in box)
+    nearest = np.zeros((high, wide))
+    if scene.solid:
+        nearest[:] = scene.room.nearness[n][box].repeat(scale, axis=0).repeat(scale, axis=1)
+    colours, whose = np.empty((high, wide, 3), np.float32), np.zeros((high, wide), np.uint8)
+    for drawing, at in zip(drawings, pixels, strict=True):
+        behind, mesh, places = nearest.copy(), drawing.actor.mesh, drawing.moments[k]
+        draw(
+            (at - [box[1].start, box[0].start]) * scale,
+            places @ np.array(camera.R)[2] + camera.t[2],
+            drawing.shaded,
+            mesh.vertices_m,
+            mesh.faces,
+            mesh.materials,
+            drawing.actor.palette,
+            drawing.actor.pattern,
+            nearest,
+            colours,
+        )
+        whose[nearest != behind] = drawing.number
+    gather(whose > 0, colours, scale, body[box], 1.0 / len(drawings[0].moments))
+    return box, whose
+
+
+def _covered(whose: NDArray[np.uint8], people: int, scale: int) -> NDArray[np.bool_]:
+    """Whether each person has half of a pixel's samples or more, (people, h, w)."""
+    samples = whose.reshape(whose.shape[0] // scale, scale, whose.shape[1] // scale, scale)
+    counts = [(samples == number).sum(axis=(1, 3)) for number in range(1, people + 1)]
+    return np.asarray(2 * np.stack(counts) >= scale * scale)
 
 
 def _box(pixels: Vector, rig: Rig) -> tuple[slice, slice]:
@@ -186,10 +253,13 @@ def _box(pixels: Vector, rig: Rig) -> tuple[slice, slice]:
     return slice(low[1], max(high[1], low[1])), slice(low[0], max(high[0], low[0]))
 
 
-def _darkness(scene: _Scene, places: NDArray[np.float64]) -> list[NDArray[np.float32]]:
-    """Light that arrives in each pixel of each camera, (h, w), 0 to 1."""
+def _light(scene: _Scene, i: int) -> list[NDArray[np.float32]]:
+    """Light that arrives in each pixel of each camera, (h, w), 0 to 1, in frame i."""
+    there = [actor for actor in scene.cast if actor.present[i]]
+    if not there:
+        return [np.ones((scene.rig.height, scene.rig.width), np.float32)] * len(scene.rig.cameras)
     soft = [
-        _lamp_mask(scene.mesh, lamp, places, blur)
+        _lamp_mask(there, i, lamp, blur)
         for lamp, blur in zip(scene.room.lamps, BLURS_PX, strict=True)
     ]
     found = []
@@ -202,21 +272,12 @@ def _darkness(scene: _Scene, places: NDArray[np.float64]) -> list[NDArray[np.flo
     return found
 
 
-def _lamp_mask(
-    mesh: Mesh, lamp: Lamp, places: NDArray[np.float64], blur_px: int
-) -> NDArray[np.float32]:
-    """The person in a lamp's picture, blurred by the lamp's size."""
+def _lamp_mask(there: list[_Actor], i: int, lamp: Lamp, blur_px: int) -> NDArray[np.float32]:
+    """The people in a lamp's picture, blurred by the lamp's size."""
     mask = np.zeros((LIGHT_MAP_PX, LIGHT_MAP_PX), np.uint8)
-    cover(lamp_pixels(lamp, places), mesh.faces, mask)
+    for actor in there:
+        cover(lamp_pixels(lamp, actor.places[i]), actor.mesh.faces, mask)
     return cv2.GaussianBlur(mask.astype(np.float32), (blur_px, blur_px), 0)
-
-
-def _nobody(rig: Rig) -> tuple[list[Body], list[NDArray[np.float32]]]:
-    """Values for body and shadow while the room is empty."""
-    shape = (rig.height, rig.width)
-    body = np.zeros((*shape, 4), np.float32), np.zeros(shape, bool)
-    cameras = len(rig.cameras)
-    return [body] * cameras, [np.ones(shape, np.float32)] * cameras
 
 
 def _grain_of(
@@ -229,12 +290,12 @@ def _grain_of(
 def _exposed(
     scene: _Scene,
     n: int,
-    body: Body,
+    body: Coverage,
     lit: NDArray[np.float32],
     gain: float,
     noise: NDArray[np.float32],
-) -> tuple[Image, Mask]:
-    """The picture of camera n and its mask."""
+) -> Image:
+    """The picture of camera n."""
     frame = np.empty((scene.rig.height, scene.rig.width, 3), np.uint8)
     expose(scene.room.pictures[n], lit, body[0], gain, noise, frame)
-    return frame, body[1]
+    return frame

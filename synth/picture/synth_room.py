@@ -77,6 +77,11 @@ class Room(NamedTuple):
     """The key light, and the ceiling, whose shadow lies under the feet."""
     shadows_px: tuple[tuple[NDArray[np.float32], ...], ...]
     """[camera][lamp]: (h, w, 2) place of a pixel's point in the lamp's picture."""
+    nearness: tuple[NDArray[np.float64], ...]
+    """(h, w) per camera: inverse depth of the walls and the furniture, 1/m."""
+    low: Vector
+    """(3,) the walls' lower corner, metres; so is the upper one, `high`."""
+    high: Vector
 
 
 def furnished(seed: int, rig: Rig) -> Room:
@@ -86,12 +91,13 @@ def furnished(seed: int, rig: Rig) -> Room:
     boxes += _furniture(rng, _walls_seen(boxes[0], len(rig.cameras)))
     key = np.array([rng.uniform(-2.2, 2.2), rng.uniform(2.8, 3.8), rng.uniform(1.6, 3.0)])
     lamps = (_lamp(key), _lamp(np.array([0.05, 5.5, 0.05])))
-    pictures, maps = [], []
-    for n in range(len(rig.cameras)):
+    pictures, maps, near = [], [], []
+    for n, camera in enumerate(rig.cameras):
         picture, points = _seen(rig, n, boxes, key, rng)
         pictures.append(picture)
         maps.append(tuple(_shadow_map(lamp, points) for lamp in lamps))
-    return Room(tuple(pictures), lamps, tuple(maps))
+        near.append(1.0 / (points @ np.array(camera.R)[2] + camera.t[2]))
+    return Room(tuple(pictures), lamps, tuple(maps), tuple(near), boxes[0].low, boxes[0].high)
 
 
 def _shadow_map(lamp: Lamp, points_m: NDArray[np.float64]) -> NDArray[np.float32]:

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 
 import typer
 
-from common.config.part_settings import BusSettings
+from common.config.part_settings import BusSettings, SettingsError
 from common.config.settings import Settings
 from runtime.faults import refuse_unfollowed
 from runtime.store.run_exports import OWN_NAMES, Format
@@ -92,10 +92,19 @@ def line_of_runs(clips: Mapping[str, Mapping[str, Any]], out: Path) -> str:
 def synth(
     out: Out,
     motion: Annotated[
-        Literal["postures", "free", "fall", "stream"],
+        Literal["postures", "free", "fall", "stream"] | None,
         typer.Option(help="The 15 postures, free motion, falls, or all postures in one take."),
-    ] = "postures",
-    performers: Annotated[int, typer.Option(min=1, max=1000, help="How many people.")] = 1,
+    ] = None,
+    performers: Annotated[
+        int | None, typer.Option(min=1, max=1000, help="How many people, one in each clip.")
+    ] = None,
+    people: Annotated[
+        int | None,
+        typer.Option(help="Scenes instead: so many people in a room at once, 1 to 5."),
+    ] = None,
+    seconds: Annotated[
+        float | None, typer.Option(help="How long a scene of --people is.")
+    ] = None,
     takes: Annotated[
         int, typer.Option(min=1, max=100, help="Takes of each posture by each person.")
     ] = 1,
@@ -113,15 +122,36 @@ def synth(
 ) -> None:
     """Make clips of synthetic people with ground truth.
 
+    With --people there are several in each: they walk past and around each other, perform
+    different postures, embrace, hand things over, come in and leave.
+
     Example: tritrack synth --out clips --performers 3 --seed 7
+
+    Example: tritrack synth --out scenes --people 2 --cameras 3 --takes 4
     """
+    from synth.scene.scene_clips import SceneSet
     from synth.write import ClipSet
     from tritrack.making import make_clips
 
-    wanted = ClipSet(motion, performers, takes, seed, tuple(posture or ()), cameras)
+    wanted: ClipSet | SceneSet
+    if people is None:
+        _refuse(("--seconds", seconds), because="needs --people: other clips have their length")
+        number = 1 if performers is None else performers
+        wanted = ClipSet(motion or "postures", number, takes, seed, tuple(posture or ()), cameras)
+    else:
+        alone = (("--motion", motion), ("--performers", performers), ("--posture", posture))
+        _refuse(*alone, because="is of clips of one person: leave it or --people out")
+        wanted = SceneSet(people, 10.0 if seconds is None else seconds, takes, seed, cameras)
     made = make_clips(out, wanted, size, console)
     facts = {"clips": [str(folder) for folder in made]}
     tell(facts, json_wanted, f"{counted(len(made), 'clip')} written to {out}")
+
+
+def _refuse(*options: tuple[str, object], because: str) -> None:
+    """An error for the first option that was given."""
+    given = [name for name, value in options if value is not None]
+    if given:
+        raise SettingsError(f"{given[0]} {because}")
 
 
 def single(

@@ -1,0 +1,85 @@
+"""The floor of a scene: where people can stand in all pictures, and where they go out."""
+
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from common.body.body import Vector
+from common.rig.camera import Camera, Rig, centre
+from synth.picture.synth_room import Room
+from synth.scene.script import Floor
+
+ASIDE_M: Final = 0.4
+"""Half the width of a person who stands or walks."""
+SPAN_M: Final = 0.95
+"""Half the width of a person in the T-pose."""
+NEAREST_M: Final = 3.25
+"""Smallest distance of a person from a camera: nearer, head and feet leave a picture of 4:3."""
+FURNITURE_M: Final = 0.8
+"""Distance from a wall: furniture and half a person."""
+FARTHEST_M: Final = 1.5
+"""Half the side of the square in which places are sought."""
+OUT_M: Final = 0.9
+"""Distance behind a wall at which a walk out ends."""
+GRID: Final = 41
+"""Number of places tried, each way."""
+MIDDLE_M: Final = 1.0
+"""Height at which a picture's width counts."""
+
+
+class Ground(NamedTuple):
+    """The places of a scene."""
+
+    places_m: Floor
+    """(k, 2) where a person is in all pictures."""
+    opening_m: Floor
+    """(k, 2) where a person in the T-pose is."""
+    room: Room
+
+
+def ground(rig: Rig, room: Room) -> Ground:
+    """The places before some cameras in a room.
+
+    Raises:
+        ValueError: When there are none.
+    """
+    side = np.linspace(-FARTHEST_M, FARTHEST_M, GRID)
+    tried = np.stack(np.meshgrid(side, side), axis=-1).reshape(-1, 2)
+    low, high = room.low[[0, 2]] + FURNITURE_M, room.high[[0, 2]] - FURNITURE_M
+    tried = tried[((tried >= low) & (tried <= high)).all(axis=1)]
+    standing = np.all([_shows(camera, tried, rig, ASIDE_M) for camera in rig.cameras], axis=0)
+    spread = np.all([_shows(camera, tried, rig, SPAN_M) for camera in rig.cameras], axis=0)
+    spread &= (tried[:, 0] >= low[0] + 0.2) & (tried[:, 0] <= high[0] - 0.2)
+    if not spread.any():
+        raise ValueError("the cameras have no place in common where a person is seen whole")
+    return Ground(tried[standing], tried[spread & standing], room)
+
+
+def inside(room: Room, places_m: Floor, behind_m: float = 0.0) -> Vector:
+    """Whether places (n, 2) are in the room, or up to a distance behind its walls."""
+    low, high = room.low[[0, 2]] - behind_m, room.high[[0, 2]] + behind_m
+    found: Vector = ((places_m >= low) & (places_m <= high)).all(axis=1)
+    return found
+
+
+def way_out(room: Room, from_m: Floor) -> Floor:
+    """(2,) the place behind the nearest wall."""
+    low, high = room.low[[0, 2]] - OUT_M, room.high[[0, 2]] + OUT_M
+    sides = ((0, low[0]), (0, high[0]), (1, low[1]), (1, high[1]))
+    axis, wall = min(sides, key=lambda side: abs(side[1] - from_m[side[0]]))
+    out = np.array(from_m, np.float64)
+    out[axis] = wall
+    return out
+
+
+def _shows(camera: Camera, places_m: Floor, rig: Rig, half_m: float) -> Vector:
+    """Whether a camera's picture is wide enough for a person at each place, (n,)."""
+    R, K = np.array(camera.R), np.array(camera.K)
+    points = np.insert(places_m, 1, MIDDLE_M, axis=1)
+    seen = points @ R.T + np.array(camera.t)
+    depth = np.maximum(seen[:, 2], 0.1)
+    at_px, half_px = K[0, 0] * seen[:, 0] / depth + K[0, 2], K[0, 0] * half_m / depth
+    fits = (at_px - half_px >= 0.0) & (at_px + half_px <= rig.width)
+    eye = centre(camera)[[0, 2]]
+    found: Vector = fits & (np.linalg.norm(places_m - eye, axis=1) >= NEAREST_M)
+    return found

@@ -1,0 +1,174 @@
+"""Scenes on disk: clips whose truth has a row for each frame and person."""
+
+import json
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+
+from common.body.body import Vector
+from common.npz_file import Arrays
+from common.rig.camera import Rig
+from synth.motion.motions import Motion
+from synth.picture.exposure import exposures
+from synth.picture.random_rig import MOST_CAMERAS, rig_around
+from synth.picture.render import Part, render_scene, room_of
+from synth.scene.floor import inside
+from synth.scene.scene import MOST_PEOPLE, Scene, SceneSeed, scene
+from synth.write import (
+    FPS,
+    ROOM_SEED,
+    Filming,
+    SynthError,
+    filmed,
+    meta_of,
+    projected,
+    refuse_to_lose,
+    truth_of,
+    write_rig,
+)
+
+PER_PERSON: Final = ("measures", "performer")
+"""Arrays of the truth with one row per person."""
+SHOWN: Final = 0.5
+"""Share of a person's joints that a picture contains when the person is in it."""
+LASTS_S: Final = (3.0, 600.0)
+
+
+class SceneSet(NamedTuple):
+    """Content of a set of scenes."""
+
+    people: int
+    """1 to MOST_PEOPLE."""
+    lasts_s: float = 10.0
+    takes: int = 1
+    """Number of scenes, each of other people in another room."""
+    seed: int = 0
+    """The same seed gives the same scenes, byte for byte."""
+    cameras: int = 2
+    """1 to MOST_CAMERAS."""
+
+
+def write_scenes(
+    out: Path,
+    wanted: SceneSet,
+    size: tuple[int, int],
+    progress: Callable[[int, int], None] | None = None,
+) -> list[Path]:
+    """Scenes of several people, with `calibration.json` beside them.
+
+    Args:
+        out: Folder, created where missing; clips of the same names are replaced.
+        wanted: Content of the scenes.
+        size: Width and height of the pictures.
+        progress: Receives the number of finished scenes, and of all.
+
+    Returns:
+        The clips' folders, in order.
+
+    Raises:
+        SynthError: When a number is out of its range, people find no room, or the calibration of
+            other cameras would be lost.
+    """
+    _refuse_what_cannot_be(wanted, size)
+    rig = rig_around(size, wanted.cameras, wanted.seed)
+    out.mkdir(parents=True, exist_ok=True)
+    refuse_to_lose(out / "calibration.json", rig)
+    write_rig(out / "calibration.json", rig)
+    folders = []
+    for take in range(1, wanted.takes + 1):
+        folders.append(out / f"people{wanted.people}_s{wanted.seed:02d}_t{take}")
+        room_seed = wanted.seed * ROOM_SEED + take
+        asked = SceneSeed(wanted.people, wanted.lasts_s, wanted.seed, take, room_seed)
+        _write_scene(folders[-1], asked, rig)
+        if progress is not None:
+            progress(take, wanted.takes)
+    return folders
+
+
+def _write_scene(folder: Path, wanted: SceneSeed, rig: Rig) -> None:
+    try:
+        made = scene(wanted, rig, FPS)
+    except ValueError as error:
+        raise SynthError(str(error)) from error
+    folder.mkdir(parents=True, exist_ok=True)
+    filming = Filming(rig, wanted.room_seed, wanted.take + 1000 * wanted.seed)
+    shots = render_scene(made.parts, rig, wanted.room_seed, filming.seed)
+    masks = filmed(folder, shots, rig, FPS)
+    (folder / "meta.json").write_text(json.dumps(_meta(made, filming, wanted), indent=1) + "\n")
+    gain = exposures(len(rig.cameras), len(made.parts[0].motion.phase), filming.seed, FPS)
+    truths = []
+    for number, (someone, motion) in enumerate(made.parts):
+        own = {name: packed[:, number] for name, packed in masks.items()}
+        present = in_pictures(motion, rig, wanted.room_seed)
+        truths.append({**truth_of(someone, motion, rig, wanted.take), "present": present, **own})
+    np.savez_compressed(
+        folder / "truth.npz", allow_pickle=False, **together(truths), gain=gain.astype(np.float32)
+    )
+
+
+def together(truths: Sequence[Arrays]) -> Arrays:
+    """The truths of several people as one: rows by frame, then person, with `frame` and `person`
+    for each; that of one person as it is.
+
+    Args:
+        truths: Content of `truth.npz` of each person alone, the same frames in all.
+    """
+    first = truths[0]
+    if len(truths) == 1:
+        return first
+    count, people = len(first["present"]), len(truths)
+    found = {
+        "frame": np.repeat(np.arange(count, dtype=np.int64), people),
+        "person": np.tile(np.arange(people, dtype=np.int64), count),
+    }
+    for name, array in first.items():
+        if name in PER_PERSON:
+            found[name] = np.stack([truth[name] for truth in truths])
+        elif name.startswith("frames_") or np.ndim(array) == 0 or len(array) != count:
+            found[name] = array
+        else:
+            rows = np.stack([truth[name] for truth in truths], axis=1)
+            found[name] = rows.reshape(count * people, *rows.shape[2:])
+    return found
+
+
+def in_pictures(motion: Motion, rig: Rig, room_seed: int) -> Vector:
+    """Whether the person is in the room and in a camera's picture in each frame, (n,), hidden by
+    others or not."""
+    there = motion.present.copy()
+    there[there] = inside(room_of(room_seed, rig), motion.root_m[there][:, [0, 2]])
+    shown = np.zeros(len(there), np.bool_)
+    for camera in rig.cameras:
+        pixels = np.nan_to_num(projected(camera, motion), nan=-1.0)
+        within = ((pixels >= 0.0) & (pixels <= (rig.width, rig.height))).all(axis=2)
+        shown |= within.mean(axis=1) > SHOWN
+    return there & shown
+
+
+def _meta(made: Scene, filming: Filming, wanted: SceneSeed) -> dict[str, Any]:
+    """What describes a scene: of the clip, of each person, and who touches whom."""
+    each = [meta_of(*part, filming, wanted.take) for part in made.parts]
+    of_all = {name: each[0][name] for name in ("posture", "take", "room", "fps", "n_frames", "seed")}
+    if len(each) == 1:
+        return each[0]
+    people = [{name: one[name] for name in one if name not in of_all} for one in each]
+    contacts = [contact._asdict() for contact in made.contacts]
+    return {**of_all, "posture_id": -1, "people": people, "contacts": contacts}
+
+
+def _refuse_what_cannot_be(wanted: SceneSet, size: tuple[int, int]) -> None:
+    ranges = (
+        ("people", wanted.people, 1, MOST_PEOPLE),
+        ("cameras", wanted.cameras, 1, MOST_CAMERAS),
+        ("seconds", wanted.lasts_s, *LASTS_S),
+    )
+    for what, number, low, high in ranges:
+        if not low <= number <= high:
+            raise SynthError(f"{what} must be {low:g} to {high:g}, got {number:g}")
+    for what, number, low in (("takes", wanted.takes, 1), ("seed", wanted.seed, 0)):
+        if number < low:
+            raise SynthError(f"{what} must be at least {low}, got {number}")
+    if min(size) < 32 or max(size) > 4096:
+        raise SynthError(f"a picture has 32 to 4096 pixels each way, got {size[0]}x{size[1]}")
