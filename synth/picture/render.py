@@ -122,9 +122,9 @@ def _shots(scene: _Scene, fps: float, seed: int) -> Iterator[Shot]:
     for i in range(count):
         corners = rng.integers(0, 61, (cameras, 2))
         bodies, lit = _bodies(scene, i), _light(scene, i)
+        noises = [grain[y : y + rig.height, x : x + rig.width] for y, x in corners]
         frames = [
-            _exposed(scene, n, bodies[n], lit[n], gains[n, i], _grain_of(grain, corners[n], rig))
-            for n in range(cameras)
+            _exposed(scene, n, bodies[n], lit[n], gains[n, i], noises[n]) for n in range(cameras)
         ]
         yield Shot(tuple(frames), tuple(masks for _, masks in bodies))
 
@@ -278,13 +278,6 @@ def _lamp_mask(there: list[_Actor], i: int, lamp: Lamp, blur_px: int) -> NDArray
     for actor in there:
         cover(lamp_pixels(lamp, actor.places[i]), actor.mesh.faces, mask)
     return cv2.GaussianBlur(mask.astype(np.float32), (blur_px, blur_px), 0)
-
-
-def _grain_of(
-    grain: NDArray[np.float32], corner: NDArray[np.int64], rig: Rig
-) -> NDArray[np.float32]:
-    """A picture's noise: the same grain, shifted."""
-    return grain[corner[0] : corner[0] + rig.height, corner[1] : corner[1] + rig.width]
 
 
 def _exposed(

@@ -34,6 +34,8 @@ FURNISHED_M: Final = (-1.9, 1.7)
 """Range along the walls behind the person in which objects stand."""
 WIDEST_M: Final = 0.9
 """Largest width of an object along a wall."""
+FLOOR_M: Final = 0.02
+"""Height up to which the room hides no person: soles lie on the floor."""
 SAMPLES: Final = 2
 """Rays per pixel, each way."""
 
@@ -78,7 +80,7 @@ class Room(NamedTuple):
     shadows_px: tuple[tuple[NDArray[np.float32], ...], ...]
     """[camera][lamp]: (h, w, 2) place of a pixel's point in the lamp's picture."""
     nearness: tuple[NDArray[np.float64], ...]
-    """(h, w) per camera: inverse depth of the walls and the furniture, 1/m."""
+    """(h, w) per camera: inverse depth of the walls and the furniture, 1/m; 0 on the floor."""
     low: Vector
     """(3,) the walls' lower corner, metres; so is the upper one, `high`."""
     high: Vector
@@ -96,7 +98,8 @@ def furnished(seed: int, rig: Rig) -> Room:
         picture, points = _seen(rig, n, boxes, key, rng)
         pictures.append(picture)
         maps.append(tuple(_shadow_map(lamp, points) for lamp in lamps))
-        near.append(1.0 / (points @ np.array(camera.R)[2] + camera.t[2]))
+        nearness = 1.0 / (points @ np.array(camera.R)[2] + camera.t[2])
+        near.append(np.where(points[..., 1] > FLOOR_M, nearness, 0.0))
     return Room(tuple(pictures), lamps, tuple(maps), tuple(near), boxes[0].low, boxes[0].high)
 
 

@@ -7,8 +7,8 @@ import numpy as np
 
 from synth.motion.idling import IDLE, RETURNS
 from synth.motion.moves import MOTION_S, MOVES
+from synth.scene.contact_moves import embrace, handing
 from synth.scene.floor import Ground, way_out
-from synth.scene.meeting import embrace, handing
 from synth.scene.plot import (
     APART_M,
     TRIES,
@@ -84,7 +84,7 @@ def orbit(plot: Plot, ground: Ground, rng: Random) -> Plot:
     return _while(plot, later(after, walk.to_s - plot.now_s), pair, rng)
 
 
-def perform(plot: Plot, ground: Ground, rng: Random) -> Plot:
+def perform(plot: Plot, _ground: Ground, rng: Random) -> Plot:
     """Everybody does something else at their place."""
     ready = plot
     for who in plot.there:

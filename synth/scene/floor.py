@@ -3,8 +3,8 @@
 from typing import Final, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from common.body.body import Vector
 from common.rig.camera import Camera, Rig, centre
 from synth.picture.synth_room import Room
 from synth.scene.script import Floor
@@ -47,19 +47,20 @@ def ground(rig: Rig, room: Room) -> Ground:
     tried = np.stack(np.meshgrid(side, side), axis=-1).reshape(-1, 2)
     low, high = room.low[[0, 2]] + FURNITURE_M, room.high[[0, 2]] - FURNITURE_M
     tried = tried[((tried >= low) & (tried <= high)).all(axis=1)]
-    standing = np.all([_shows(camera, tried, rig, ASIDE_M) for camera in rig.cameras], axis=0)
-    spread = np.all([_shows(camera, tried, rig, SPAN_M) for camera in rig.cameras], axis=0)
+    standing, spread = (
+        np.stack([_shows(camera, tried, rig, half_m) for camera in rig.cameras]).all(axis=0)
+        for half_m in (ASIDE_M, SPAN_M)
+    )
     spread &= (tried[:, 0] >= low[0] + 0.2) & (tried[:, 0] <= high[0] - 0.2)
-    if not spread.any():
+    if not (spread & standing).any():
         raise ValueError("the cameras have no place in common where a person is seen whole")
     return Ground(tried[standing], tried[spread & standing], room)
 
 
-def inside(room: Room, places_m: Floor, behind_m: float = 0.0) -> Vector:
+def inside(room: Room, places_m: Floor, behind_m: float = 0.0) -> NDArray[np.bool_]:
     """Whether places (n, 2) are in the room, or up to a distance behind its walls."""
     low, high = room.low[[0, 2]] - behind_m, room.high[[0, 2]] + behind_m
-    found: Vector = ((places_m >= low) & (places_m <= high)).all(axis=1)
-    return found
+    return np.asarray(((places_m >= low) & (places_m <= high)).all(axis=1))
 
 
 def way_out(room: Room, from_m: Floor) -> Floor:
@@ -72,7 +73,7 @@ def way_out(room: Room, from_m: Floor) -> Floor:
     return out
 
 
-def _shows(camera: Camera, places_m: Floor, rig: Rig, half_m: float) -> Vector:
+def _shows(camera: Camera, places_m: Floor, rig: Rig, half_m: float) -> NDArray[np.bool_]:
     """Whether a camera's picture is wide enough for a person at each place, (n,)."""
     R, K = np.array(camera.R), np.array(camera.K)
     points = np.insert(places_m, 1, MIDDLE_M, axis=1)
@@ -81,5 +82,4 @@ def _shows(camera: Camera, places_m: Floor, rig: Rig, half_m: float) -> Vector:
     at_px, half_px = K[0, 0] * seen[:, 0] / depth + K[0, 2], K[0, 0] * half_m / depth
     fits = (at_px - half_px >= 0.0) & (at_px + half_px <= rig.width)
     eye = centre(camera)[[0, 2]]
-    found: Vector = fits & (np.linalg.norm(places_m - eye, axis=1) >= NEAREST_M)
-    return found
+    return np.asarray(fits & (np.linalg.norm(places_m - eye, axis=1) >= NEAREST_M))

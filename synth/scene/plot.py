@@ -4,6 +4,7 @@ from itertools import combinations
 from typing import Final, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from common.body.body import Vector
 from synth.motion.moves import Move
@@ -20,7 +21,7 @@ OFF_M: Final = 0.25
 """Largest distance of a way from the places where a person is in all pictures."""
 LOOKED_S: Final = 0.1
 """Time between two comparisons of places."""
-TRIES: Final = 60
+TRIES: Final = 25
 """Number of random choices before a beat is given up."""
 
 SPOT_TRIES: Final = 300
@@ -118,7 +119,7 @@ def refuse_clashes(before: Plot, after: Plot) -> None:
             raise Clash("too close")
 
 
-def touching(plot: Plot, people: tuple[int, int], time_s: Vector) -> Vector:
+def touching(plot: Plot, people: tuple[int, int], time_s: Vector) -> NDArray[np.bool_]:
     """Whether two people touch each other on purpose at each time, (n,)."""
     found = np.zeros(len(time_s), np.bool_)
     for contact in plot.contacts:

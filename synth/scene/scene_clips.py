@@ -6,16 +6,16 @@ from pathlib import Path
 from typing import Any, Final, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from common.body.body import Vector
 from common.npz_file import Arrays
 from common.rig.camera import Rig
 from synth.motion.motions import Motion
 from synth.picture.exposure import exposures
 from synth.picture.random_rig import MOST_CAMERAS, rig_around
-from synth.picture.render import Part, render_scene, room_of
+from synth.picture.render import render_scene, room_of
 from synth.scene.floor import inside
-from synth.scene.scene import MOST_PEOPLE, Scene, SceneSeed, scene
+from synth.scene.people_scene import MOST_PEOPLE, Scene, SceneSeed, scene
 from synth.write import (
     FPS,
     ROOM_SEED,
@@ -134,7 +134,7 @@ def together(truths: Sequence[Arrays]) -> Arrays:
     return found
 
 
-def in_pictures(motion: Motion, rig: Rig, room_seed: int) -> Vector:
+def in_pictures(motion: Motion, rig: Rig, room_seed: int) -> NDArray[np.bool_]:
     """Whether the person is in the room and in a camera's picture in each frame, (n,), hidden by
     others or not."""
     there = motion.present.copy()
@@ -150,7 +150,9 @@ def in_pictures(motion: Motion, rig: Rig, room_seed: int) -> Vector:
 def _meta(made: Scene, filming: Filming, wanted: SceneSeed) -> dict[str, Any]:
     """What describes a scene: of the clip, of each person, and who touches whom."""
     each = [meta_of(*part, filming, wanted.take) for part in made.parts]
-    of_all = {name: each[0][name] for name in ("posture", "take", "room", "fps", "n_frames", "seed")}
+    of_all = {
+        name: each[0][name] for name in ("posture", "take", "room", "fps", "n_frames", "seed")
+    }
     if len(each) == 1:
         return each[0]
     people = [{name: one[name] for name in one if name not in of_all} for one in each]

@@ -76,7 +76,8 @@ def places(script: Script, time_s: Vector) -> Floor:
 def headings(script: Script, time_s: Vector) -> Vector:
     """Heading at each time, degrees, (n,), without jumps of a whole turn."""
     wanted = np.zeros(len(time_s))
-    events = sorted([*script.turns, *script.walks], key=lambda event: event.from_s)
+    events: list[Turn | Walk] = [*script.turns, *script.walks]
+    events.sort(key=lambda event: event.from_s)
     for event in events:
         begun = time_s >= event.from_s
         if isinstance(event, Turn):

@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 from common.body.body import Vector
 from synth.motion.footing import posed
 from synth.motion.motions import (
-    MOTION,
     OPENING_S,
     TPOSE,
     Act,
@@ -55,7 +54,7 @@ def acted(
     for gesture in script.gestures:
         angles_deg += _gestured(gesture, style, still, time_s)
     if (phase == TPOSE).any():
-        angles_deg = opened(angles_deg, phase, fps)
+        angles_deg = opened(angles_deg, opening_phase(len(phase), fps), fps)
     angles_deg += sway(style, time_s, rng)
     motion = staged(someone, Course("scene", fps, angles_deg, phase, style, path_m))
     acts = (Act(g.name, round(g.from_s * fps), round(g.to_s * fps)) for g in script.gestures)
@@ -63,12 +62,9 @@ def acted(
 
 
 def opening_phase(count: int, fps: float) -> NDArray[np.uint8]:
-    """Phases of somebody who performs the opening, (n,)."""
-    lasts = [round(s * fps) for s in OPENING_S]
-    ends = np.cumsum(lasts)
-    phase = np.searchsorted(ends, np.arange(count), side="right").astype(np.uint8)
-    assert phase.max() <= MOTION
-    return phase
+    """Phases of a person who performs the opening and stays, (n,)."""
+    ends = np.cumsum([round(s * fps) for s in OPENING_S])
+    return np.searchsorted(ends, np.arange(count), side="right").astype(np.uint8)
 
 
 def _gait(
@@ -99,9 +95,7 @@ def _natural_m_s(someone: Person, style: Style, fps: float) -> float:
     return float(body.joints_m[-1, 0, 2] - body.joints_m[0, 0, 2]) / float(time_s[-1])
 
 
-def _gestured(
-    gesture: Gesture, style: Style, still: Track, time_s: Vector
-) -> NDArray[np.float64]:
+def _gestured(gesture: Gesture, style: Style, still: Track, time_s: Vector) -> NDArray[np.float64]:
     """What a gesture adds to the joint angles, (n, 27)."""
     _, from_s, to_s, move = gesture
     during = (time_s >= from_s) & (time_s < to_s)

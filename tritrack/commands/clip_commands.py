@@ -102,9 +102,7 @@ def synth(
         int | None,
         typer.Option(help="Scenes instead: so many people in a room at once, 1 to 5."),
     ] = None,
-    seconds: Annotated[
-        float | None, typer.Option(help="How long a scene of --people is.")
-    ] = None,
+    seconds: Annotated[float | None, typer.Option(help="How long a scene of --people is.")] = None,
     takes: Annotated[
         int, typer.Option(min=1, max=100, help="Takes of each posture by each person.")
     ] = 1,
@@ -125,9 +123,7 @@ def synth(
     With --people there are several in each: they walk past and around each other, perform
     different postures, embrace, hand things over, come in and leave.
 
-    Example: tritrack synth --out clips --performers 3 --seed 7
-
-    Example: tritrack synth --out scenes --people 2 --cameras 3 --takes 4
+    Example: tritrack synth --out scenes --people 2 --cameras 3 --takes 4 --seed 7
     """
     from synth.scene.scene_clips import SceneSet
     from synth.write import ClipSet

@@ -6,7 +6,6 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from common.body.body import Vector
 from common.rig.camera import Rig
 from synth.motion.motions import EMPTY, MOTION, Motion
 from synth.person.people import Person, person
@@ -95,7 +94,7 @@ def _plotted(wanted: SceneSeed, place: Ground, rng: np.random.Generator) -> Plot
             plot = _continued(plot, ["come in"], place, rng)
             continue
         plot = _continued(plot, [lead, *rng.permutation(leads)], place, rng)
-        lead = str(rng.choice(leads))
+        lead = str(rng.choice([name for name in leads if name != lead]))
     return plot
 
 
@@ -131,9 +130,7 @@ def _opened(people: int, place: Ground, rng: np.random.Generator) -> Plot:
     return Plot(tuple(Script(start) for start in starts), OPENED_S, out)
 
 
-def _played(
-    cast: list[Person], plot: Plot, place: Ground, wanted: SceneSeed, fps: float
-) -> Scene:
+def _played(cast: list[Person], plot: Plot, place: Ground, wanted: SceneSeed, fps: float) -> Scene:
     """The motions of a plot.
 
     Raises:
@@ -159,7 +156,7 @@ def _phases(script: Script, place: Ground, count: int, fps: float) -> NDArray[np
     return np.where(there, phase, np.uint8(EMPTY))
 
 
-def refuse_collisions(one: Motion, other: Motion, near: Vector) -> None:
+def refuse_collisions(one: Motion, other: Motion, near: NDArray[np.bool_]) -> None:
     """Raise where two bodies come too close.
 
     Args:

@@ -20,7 +20,7 @@ def embrace(lasts_s: float, high: str) -> Move:
         up, found = _held(t, lasts_s), {}
         for side in "lr":
             flex = 78.0 if side == high else 48.0
-            for name, value in (("sh_flex", flex), ("sh_abd", 14.0), ("sh_twist", 62.0)):
+            for name, value in (("sh_flex", flex), ("sh_abd", 20.0), ("sh_twist", -75.0)):
                 key = f"{side}_{name}"
                 found[key] = still[key] + up * (value - still[key])
             found[f"{side}_elbow"] = still[f"{side}_elbow"] + up * (62.0 - still[f"{side}_elbow"])

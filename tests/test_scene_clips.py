@@ -1,0 +1,193 @@
+"""Scenes on disk: depth order, a truth of each person, and the same bytes from a seed."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+import pytest
+
+from common.rig.camera import project
+from common.rig.rig_file import load_rig
+from synth.motion.motions import Motion, performance
+from synth.person.people import person
+from synth.person.skeleton import JOINTS
+from synth.picture.exposure import default_rig
+from synth.picture.render import Part, render, render_scene
+from synth.scene.scene_clips import SceneSet, in_pictures, together, write_scenes
+from synth.write import Filming, SynthError, truth_of, write_clip
+
+SIZE = (96, 72)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Two people, three cameras, three seconds."""
+    told: list[tuple[int, int]] = []
+    out = tmp_path_factory.mktemp("scenes")
+    wanted = SceneSet(2, 3.0, 1, 5, 3)
+    (made,) = write_scenes(out, wanted, SIZE, lambda *done: told.append(done))
+    assert (made.name, told) == ("people2_s05_t1", [(1, 1)])
+    return made
+
+
+def placed(number: int, at_m: tuple[float, float]) -> Part:
+    """A person in two frames of a walk in place, at x and z."""
+    motion = performance(person(number), "walk_in_place", 1)
+    names = ("joints_m", "bones", "angles_deg", "root_m", "phase")
+    motion = motion._replace(**{name: getattr(motion, name)[40:42] for name in names})
+    by = np.array([at_m[0] - motion.root_m[0, 0], 0.0, at_m[1] - motion.root_m[0, 2]])
+    bones = motion.bones.copy()
+    bones[..., 3] += by
+    moved = motion._replace(joints_m=motion.joints_m + by, bones=bones, root_m=motion.root_m + by)
+    return Part(person(number), moved)
+
+
+def alone(part: Part, rig: Any) -> tuple[np.ndarray, ...]:
+    return next(render(part.someone, part.motion, rig, 4, 9)).masks
+
+
+@pytest.mark.parametrize("order", [(0, 1), (1, 0)])
+def test_who_is_nearer_hides_who_is_farther_in_each_camera(order: tuple[int, int]) -> None:
+    """Camera 1 looks along -z from +z, camera 2 along +x from -x: the first stands nearer to
+    camera 1, the second nearer to camera 2. Whoever is named first."""
+    rig = default_rig(160, 120)
+    parts = [placed(1, (0.3, 0.3)), placed(2, (0.0, 0.0))]
+    shot = next(render_scene([parts[n] for n in order], rig, 4, 9))
+    for camera, near in ((0, 0), (1, 1)):
+        whole = [alone(part, rig)[camera] for part in parts]
+        both = whole[0] & whole[1]
+        assert both.sum() > 100
+        seen = [shot.masks[camera][order.index(n)] for n in (0, 1)]
+        assert (seen[near] == whole[near]).mean() > 0.999
+        assert not (seen[0] & seen[1]).any()
+        assert (seen[near] & both).sum() > 0.97 * both.sum()
+        rest = seen[1 - near][~both], whole[1 - near][~both]
+        assert (rest[0] != rest[1]).sum() <= 3, "but for pixels that they share"
+        own = next(render(*parts[near], rig, 4, 9)).frames[camera].astype(int)
+        there = np.abs(shot.frames[camera].astype(int) - own).max(axis=2)[both]
+        assert np.median(there) <= 3
+
+
+def test_a_wall_hides_who_is_behind_it_and_shadows_add_up() -> None:
+    rig = default_rig(160, 120)
+    gone = next(render_scene([placed(1, (0.0, -4.0)), placed(2, (0.5, 0.0))], rig, 4, 9))
+    assert not gone.masks[0][0].any()
+    assert gone.masks[0][1].any()
+    one, two = placed(1, (-0.8, 0.0)), placed(2, (0.6, 0.0))
+    both = next(render_scene([one, two], rig, 4, 9)).frames[0].astype(int)
+    for part, other in ((one, two), (two, one)):
+        own = next(render_scene([part], rig, 4, 9)).frames[0].astype(int)
+        bare = ~cv2.dilate(alone(other, rig)[0].astype(np.uint8), np.ones((5, 5))).astype(bool)
+        darker = (own - both).max(axis=2) > 6
+        assert darker[bare].sum() > 20, "the other's shadow is there"
+        assert ((both - own).max(axis=2)[bare] <= 3).all(), "and nothing is brighter"
+
+
+def test_one_person_in_a_scene_is_drawn_as_alone() -> None:
+    rig, part = default_rig(96, 72), placed(3, (0.1, 0.2))
+    scene, one = next(render_scene([part], rig, 4, 9)), next(render(*part, rig, 4, 9))
+    for n in (0, 1):
+        np.testing.assert_array_equal(scene.frames[n], one.frames[n])
+        np.testing.assert_array_equal(scene.masks[n][0], one.masks[n])
+
+
+def test_rows_are_by_frame_then_person_and_each_persons_are_their_own_truth() -> None:
+    rig, parts = default_rig(*SIZE), [placed(1, (0.0, 0.0)), placed(2, (0.5, 0.0))]
+    each = [truth_of(*part, rig, 1) for part in parts]
+    truth = together(each)
+    assert truth["frame"].tolist() == [0, 0, 1, 1]
+    assert truth["person"].tolist() == [0, 1, 0, 1]
+    for who, own in enumerate(each):
+        for name in ("joints3d", "joints2d_cam1", "joints2d_cam2", "root", "present", "angles"):
+            np.testing.assert_array_equal(truth[name][truth["person"] == who], own[name])
+        for name in ("measures", "performer"):
+            np.testing.assert_array_equal(truth[name][who], own[name])
+    assert truth["frames_cam2"].tolist() == [0, 1]
+    assert truth["joint_names"].tolist() == [*JOINTS]
+    assert together(each[:1]) is each[0]
+
+
+def test_a_scene_is_a_clip_with_a_truth_of_each(folder: Path) -> None:
+    rig, truth = load_rig(folder.parent / "calibration.json"), np.load(folder / "truth.npz")
+    assert [camera.name for camera in rig.cameras] == ["cam1", "cam2", "cam3"]
+    assert len(truth["person"]) == len(truth["joints3d"]) == 2 * 45
+    names = dict.fromkeys(range(2), "")
+    for who in names:
+        own = {name: truth[name][truth["person"] == who] for name in ("joints3d", "present")}
+        assert not own["present"][:9].any()
+        for camera in rig.cameras:
+            masks = np.unpackbits(truth[f"mask_{camera.name}"], axis=-1, count=96).astype(bool)
+            masks = masks[truth["person"] == who]
+            np.testing.assert_allclose(
+                truth[f"joints2d_{camera.name}"][truth["person"] == who][20],
+                project(camera, own["joints3d"][20].astype(float)),
+                atol=0.01,
+            )
+            hits = total = 0
+            for i in np.flatnonzero(own["present"])[::5]:
+                near = cv2.dilate(masks[i].astype(np.uint8), np.ones((3, 3)))
+                pixels = np.floor(project(camera, own["joints3d"][i].astype(float))).astype(int)
+                within = ((pixels >= 0) & (pixels < SIZE)).all(axis=1)
+                hits += int(near[pixels[within, 1], pixels[within, 0]].sum())
+                total += int(within.sum())
+            assert hits > 0.6 * total > 0, "what others hide is not in the mask"
+        names[who] = str(truth["performer"][who])
+    notes = json.loads((folder / "meta.json").read_text())
+    assert [one["performer"] for one in notes["people"]] == [*names.values()]
+    assert (notes["n_frames"], notes["fps"], notes["posture"]) == (45, 15.0, "scene")
+    film = cv2.VideoCapture(str(folder / "cam3.avi"))
+    assert film.get(cv2.CAP_PROP_FRAME_COUNT) == 45
+
+
+def test_a_seed_is_the_same_bytes_twice(folder: Path, tmp_path: Path) -> None:
+    (again,) = write_scenes(tmp_path, SceneSet(2, 3.0, 1, 5, 3), SIZE)
+    for name in ("cam1.avi", "cam3.avi", "meta.json", "truth.npz"):
+        assert (again / name).read_bytes() == (folder / name).read_bytes()
+
+
+def test_one_person_alone_has_the_format_of_any_clip(tmp_path: Path) -> None:
+    (scene,) = write_scenes(tmp_path / "s", SceneSet(1, 3.0), SIZE)
+    part, rig = placed(1, (0.0, 0.0)), default_rig(*SIZE)
+    write_clip(tmp_path / "c", *part, Filming(rig, 1, 1), 1)
+    with np.load(scene / "truth.npz") as ours, np.load(tmp_path / "c" / "truth.npz") as usual:
+        assert set(ours.files) == set(usual.files)
+        for name in ours.files:
+            assert ours[name].ndim == usual[name].ndim
+            assert ours[name].dtype.kind == usual[name].dtype.kind
+    ours, usual = (json.loads((at / "meta.json").read_text()) for at in (scene, tmp_path / "c"))
+    assert ours.keys() == usual.keys()
+
+
+def test_who_is_out_of_the_room_or_of_all_pictures_is_not_present() -> None:
+    rig = default_rig(*SIZE)
+
+    def present(at_m: tuple[float, float]) -> list[bool]:
+        motion: Motion = placed(1, at_m).motion
+        return [bool(there) for there in in_pictures(motion, rig, 4)]
+
+    assert present((0.0, 0.0)) == [True, True]
+    assert present((0.0, -4.0)) == [False, False]
+    assert present((-3.5, 3.5)) == [False, False], "between the cameras, beside both pictures"
+    assert present((0.0, 2.9)) == [True, True], "in camera 2's picture alone"
+
+
+@pytest.mark.parametrize(
+    ("wanted", "size", "reason"),
+    [
+        (SceneSet(0), SIZE, "people must be 1 to 5, got 0"),
+        (SceneSet(6), SIZE, "people must be 1 to 5, got 6"),
+        (SceneSet(2, cameras=9), SIZE, "cameras must be 1 to 8, got 9"),
+        (SceneSet(2, 2.5), SIZE, "seconds must be 3 to 600, got 2.5"),
+        (SceneSet(2, takes=0), SIZE, "takes must be at least 1, got 0"),
+        (SceneSet(2, seed=-1), SIZE, "seed must be at least 0, got -1"),
+        (SceneSet(2), (16, 48), "32 to 4096 pixels each way, got 16x48"),
+    ],
+)
+def test_what_cannot_be_is_refused_before_anything_is_written(
+    tmp_path: Path, wanted: SceneSet, size: tuple[int, int], reason: str
+) -> None:
+    with pytest.raises(SynthError, match=reason):
+        write_scenes(tmp_path / "out", wanted, size)
+    assert not (tmp_path / "out").exists()
