@@ -8,6 +8,7 @@ that last, and sides that are exchanged for a while.
 
 import argparse
 import math
+from collections.abc import Sequence
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -16,7 +17,7 @@ from numpy.typing import NDArray
 from calibration.gate.known_rig import guess_of
 from calibration.person.person_calibration import calibrated_by_person
 from calibration.person.rig_quality import PersonCalibration
-from calibration.tracks.joint_tracks import JointTrack, Sighting
+from calibration.tracks.joint_tracks import JointTrack, Sighting, Sightings
 from calibration.tracks.rig_guess import PLACE, rotation
 from common.body.body import JOINT_NAMES, OTHER_SIDE, Vector
 from common.rig.camera import Camera, Rig, as_matrix, as_row, centre, project
@@ -140,9 +141,16 @@ def filmed(motion: Motion, rig: Rig, late_s: float, rng: np.random.Generator) ->
 
 def seen(film: Film, rig: Rig, late_s: float, rng: np.random.Generator) -> Sighting:
     """The same of a film; what is outside a picture is not seen."""
+    return seen_by_all(film, rig, (0.0, late_s), rng).pair(0, 1)
+
+
+def seen_by_all(
+    film: Film, rig: Rig, late_s: Sequence[float], rng: np.random.Generator
+) -> Sightings:
+    """The same by any number of cameras, each with its own delay."""
     times_s = np.arange(len(film.joints_m)) / film.hz
     tracks = []
-    for camera, shift in zip(rig.cameras, (0.0, late_s), strict=True):
+    for camera, shift in zip(rig.cameras, late_s, strict=True):
         truth = _delayed(film.joints_m, times_s, shift)
         track = _seen(truth, times_s, camera, rng)
         here = np.interp(times_s - shift, times_s, film.present) == 1.0
@@ -150,7 +158,7 @@ def seen(film: Film, rig: Rig, late_s: float, rng: np.random.Generator) -> Sight
         ahead = (truth - centre(camera)) @ np.array(camera.R)[2] > NEAREST_M
         shown = inside & ahead & here[:, None]
         tracks.append(track._replace(confidence=np.where(shown, track.confidence, 0.0)))
-    return Sighting(tracks[0], tracks[1], (rig.width, rig.height))
+    return Sightings(tuple(tracks), (rig.width, rig.height))
 
 
 def _delayed(joints_m: NDArray[np.float64], at_s: Vector, shift_s: float) -> NDArray[np.float64]:

@@ -85,7 +85,7 @@ def test_what_could_not_be_read_is_said(read: int, damaged: int, lost: bool, sai
 
 
 def test_setting_back_adds_to_what_the_second_view_is_late_already() -> None:
-    later = set_back(clip_of(FIRST, SECOND), 0.125)
+    later = set_back(clip_of(FIRST, SECOND), (0.125,))
     assert [view.late_s for view in later.views] == [0.0, 0.375]
     assert later.views[0] == FIRST
 

@@ -356,6 +356,9 @@ def test_the_offset_of_the_settings_sets_camera_2_back(folder: Path, decoder: De
     first, second = open_clip(Settings(clip=str(folder), offset_s=0.5), decoder).views
     assert first.captured_s(3) == pytest.approx(3 / 15)
     assert second.captured_s(3) == pytest.approx(3 / 15 - 0.5)
+    own = {"cam1": CameraSettings(offset_s=0.25), "cam2": CameraSettings(offset_s=-0.25)}
+    each = open_clip(Settings(clip=str(folder), offset_s=0.5, cameras=own), decoder).views
+    assert [view.late_s for view in each] == [0.25, -0.25], "each camera's own goes before"
 
 
 @pytest.mark.parametrize(("hz", "frames"), [(10.0, 5), (15.0, 8), (25.0, 13), (30.0, 15)])

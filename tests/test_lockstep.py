@@ -268,10 +268,10 @@ class Told:
         monkeypatch.setattr(lockstep, "trust_facts", self.trust)
 
     def trust(
-        self, clip: Clip, witness: Any, clock: Clock, *, insisted: bool, different_people: bool
+        self, clip: Clip, witness: Any, clocks: Any, *, insisted: bool, different_people: bool
     ) -> dict[str, Any]:
         assert not different_people
-        self.asked.append((clip, witness, clock, insisted))
+        self.asked.append((clip, witness, clocks, insisted))
         return {}
 
 
@@ -288,16 +288,16 @@ def test_what_is_told_of_the_clock_is_of_the_clip_as_it_was_followed(
     told, witness = Told(monkeypatch), Witness()
     done = lockstep._Followed(ready_made(), performed_so(seen_body()), witness)
     found, left = Clock(0.125), Clock(0.5, (1.0,), False)
-    result = lockstep._told(Looked(PAIR, clock=found), job_of(Settings()), done, left)
+    result = lockstep._told(Looked(PAIR, clocks=(found,)), job_of(Settings()), done, (left,))
     assert result.clip == PAIR
     assert result.facts["clock"]["state"] == "found"
     assert result.facts["clock"]["applied_s"] == 0.125
-    assert told.asked == [(PAIR, witness, left, False)]
+    assert told.asked == [(PAIR, witness, (left,), False)]
     assert [body.confidence for body in result.bodies] == [pytest.approx((0.05 * 0.8,))]
-    result = lockstep._told(Looked(PAIR), job_of(Settings()), done, left)
+    result = lockstep._told(Looked(PAIR), job_of(Settings()), done, (left,))
     assert result.facts["clock"]["state"] == "ambiguous"
     insists = Settings(offset_s=0.125, trust_calibration=True)
-    result = lockstep._told(Looked(PAIR), job_of(insists), done, left)
+    result = lockstep._told(Looked(PAIR), job_of(insists), done, (left,))
     assert result.facts["clock"]["state"] == "given"
     assert [body.confidence for body in result.bodies] == [(0.8,)]
     assert told.asked[-1][-1] is True
@@ -306,12 +306,12 @@ def test_what_is_told_of_the_clock_is_of_the_clip_as_it_was_followed(
 def test_a_run_that_was_being_tracked_again_goes_on_with_that_clock() -> None:
     """It was left with 0.5 s set back, of which the files tell 0.125."""
     looked = Looked(PAIR)
-    left: Any = SimpleNamespace(late_s=0.5)
+    left: Any = SimpleNamespace(late_s=(0.5,))
     again = lockstep._as_left(looked, Course(work=Left(left)))
     assert [view.late_s for view in again.clip.views] == [0.0, 0.5]
-    assert again.clock == Clock(0.375)
+    assert again.clocks == (Clock(0.375),)
     assert lockstep._as_left(looked, Course(work=Left(None))) == looked
-    same: Any = SimpleNamespace(late_s=0.125)
+    same: Any = SimpleNamespace(late_s=(0.125,))
     assert lockstep._as_left(looked, Course(work=Left(same))) == looked
 
 
@@ -350,7 +350,7 @@ def test_a_clip_is_followed_again_where_its_clock_is_found_to_be_off(
     followed: list[float] = []
     begun: list[int] = []
     clock, work = Clock(late_s), Left(None)
-    looked = Looked(PAIR, clock=None if by_files else Clock(0.0))
+    looked = Looked(PAIR, clocks=() if by_files else (Clock(0.0),))
 
     def follow(looked: Looked, *_: object) -> Any:
         followed.append(looked.clip.views[1].late_s)
@@ -360,7 +360,7 @@ def test_a_clip_is_followed_again_where_its_clock_is_found_to_be_off(
     monkeypatch.setattr(lockstep, "outside_sources", lambda *_: nullcontext({}))
     monkeypatch.setattr(lockstep, "by_person", lambda *_: looked)
     monkeypatch.setattr(lockstep, "_followed", follow)
-    monkeypatch.setattr(lockstep, "clock_seen", lambda *_: clock)
+    monkeypatch.setattr(lockstep, "clocks_seen", lambda *_: (clock,))
     monkeypatch.setattr(lockstep, "_told", lambda looked, *_: looked)
     decoders: Any = SimpleNamespace(of={1: None, 2: None})
     watch = Watch(lambda *_: None, lambda: begun.append(1))
@@ -408,8 +408,8 @@ def test_a_clip_of_three_cameras_is_tracked_by_all_of_them(three: Path, tmp_path
     done = track_all([three], tmp_path, Asked(), Console(quiet=True))
     facts = done["clips"][three.name]
     assert facts["cameras"] == ["cam1", "cam2", "cam3"]
-    assert "of 3 cameras it is not checked" in facts["warnings"][-1]
-    assert {"clock", "trust"} & {*facts} == set()
+    assert facts["trust"]["believed"]
+    assert [*facts["clocks"]] == ["cam2", "cam3"]
     run = open_run(tmp_path / three.name).poses
     truth = np.load(three / "truth.npz")
     both = compare(run, dict(truth))

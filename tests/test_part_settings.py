@@ -64,6 +64,8 @@ def test_the_empty_room_in_frames_is_told_in_seconds_of_fifteen() -> None:
 def test_a_view_has_one_source() -> None:
     CameraSettings(source="a.avi")
     CameraSettings(device=0)
+    with pytest.raises(ValueError, match="offset_s must be from"):
+        CameraSettings(offset_s=4000.0)
     with pytest.raises(ValueError, match=r"^source and device are both set: a\.avi, 0$"):
         CameraSettings(source="a.avi", device=0)
 

@@ -110,7 +110,7 @@ def test_a_clip_of_two_films_is_calibrated_by_its_person_and_their_clock(
     assert looks.asked == [((looks.sighting,), 1.9, (Clock(0.3),))]
     assert looked.clip.rig == TURNED
     assert [view.late_s for view in looked.clip.views] == [0.0, 0.25], "by the rig, not the clock"
-    assert (looked.warning, looked.clock) == ("", Clock(0.3))
+    assert (looked.warning, looked.clocks) == ("", (Clock(0.3),))
     assert looked.found is not None
     told = calibration_facts(looked)["calibration"]
     assert told["cameras"][1]["name"] == TURNED.cameras[1].name
@@ -122,7 +122,7 @@ def test_an_offset_that_is_given_is_not_looked_for(monkeypatch: pytest.MonkeyPat
     looks.late_s = 0.0
     looked = by(first_two(), Settings(offset_s=0.0))
     assert looks.asked == [((looks.sighting,), 1.75, (ON_TIME,))]
-    assert looked.clock == ON_TIME
+    assert looked.clocks == (ON_TIME,)
 
 
 def test_a_clip_whose_person_tells_no_rig_has_its_clock_set_right_and_says_why(
@@ -134,7 +134,7 @@ def test_a_clip_whose_person_tells_no_rig_has_its_clock_set_right_and_says_why(
     assert looked.clip.rig is None
     assert looked.clip.views[1].late_s == 0.4
     assert looked.warning == "not calibrated by the person: too little is seen"
-    assert (looked.found, looked.clock) == (None, Clock(0.4))
+    assert (looked.found, looked.clocks) == (None, (Clock(0.4),))
     assert calibration_facts(looked) == {}
 
 

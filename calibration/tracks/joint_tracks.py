@@ -1,4 +1,4 @@
-"""Both views of one person over time, as arrays."""
+"""All views of one person over time, as arrays."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -46,6 +46,18 @@ class Sighting(NamedTuple):
     second: JointTrack
     size_px: tuple[int, int]
     """Width and height of both pictures."""
+
+
+class Sightings(NamedTuple):
+    """All views of one clip, in the order of its cameras."""
+
+    tracks: tuple[JointTrack, ...]
+    size_px: tuple[int, int]
+    """Width and height of all pictures."""
+
+    def pair(self, one: int, other: int) -> Sighting:
+        """Two of the views."""
+        return Sighting(self.tracks[one], self.tracks[other], self.size_px)
 
 
 Row = tuple[float, Vector, Vector, float, float]

@@ -7,6 +7,8 @@ import msgspec
 
 from common.endpoint import is_endpoint, is_exposed, is_host
 
+MOST_OFFSET_S: Final = 3600.0
+"""Largest delay of a camera, seconds."""
 MOST_SESSION: Final = 64
 """Characters allowed in a session's word, which goes with every message."""
 
@@ -41,9 +43,13 @@ class CameraSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Path of a picture of the empty background, or of a video of it."""
     calibrated_as: str = ""
     """Name of the camera in the calibration; its position in the file where empty."""
+    offset_s: float | None = None
+    """Delay of this camera against camera 1, seconds: what camera 1 shows at t, it shows at
+    t + offset_s of its own times. None: estimated."""
 
     def __post_init__(self) -> None:
-        """Refuse a view with two sources."""
+        """Refuse a view with two sources, and an offset of hours."""
+        within("offset_s", self.offset_s or 0.0, -MOST_OFFSET_S, MOST_OFFSET_S)
         if self.source and self.device >= 0:
             raise ValueError(f"source and device are both set: {self.source}, {self.device}")
 

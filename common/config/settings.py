@@ -6,6 +6,7 @@ from typing import Final
 import msgspec
 
 from common.config.part_settings import (
+    MOST_OFFSET_S,
     BodySettings,
     BusSettings,
     CameraSettings,
@@ -21,7 +22,6 @@ from common.method import METHODS, Mode
 
 LANDMARK_SOURCES: Final = ("own", "none", "mediapipe")
 """Values of `landmarks` that are not paths."""
-MOST_OFFSET_S: Final = 3600.0
 CAMERA_NAME: Final = re.compile(r"[A-Za-z0-9_-]{1,32}")
 NETWORK: Final = ".onnx"
 """Suffix of a landmark network's file."""
@@ -56,7 +56,7 @@ class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     offset_s: float | None = None
     """Delay of camera 2, seconds: what camera 1 shows at t, camera 2 shows at t + offset_s of
     its own times. Negative where camera 2 was started later. None: estimated from the moving
-    person of a recorded clip."""
+    person of a recorded clip. That of another camera is its own `offset_s`."""
     metrics: str = ""
     """HOST:PORT at which a live run answers /metrics (Prometheus) and /healthz; nowhere where
     empty."""

@@ -1,7 +1,7 @@
 """What a run knows about its clip."""
 
 from bisect import bisect_right
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any, Final
 
 import msgspec
@@ -174,11 +174,14 @@ def unread_facts(endings: Iterable[tuple[ClipView, Ending]]) -> dict[str, Any]:
     return {"unread": lost} if lost else {}
 
 
-def set_back(clip: Clip, late_s: float) -> Clip:
-    """The clip with the times of its second view set back by that much more."""
-    first, second = clip.views
-    second = msgspec.structs.replace(second, late_s=second.late_s + late_s)
-    return msgspec.structs.replace(clip, views=(first, second))
+def set_back(clip: Clip, late_s: Sequence[float]) -> Clip:
+    """The clip with the times of each view after the first set back by that much more."""
+    first, *others = clip.views
+    later = (
+        msgspec.structs.replace(view, late_s=view.late_s + more_s)
+        for view, more_s in zip(others, late_s, strict=True)
+    )
+    return msgspec.structs.replace(clip, views=(first, *later))
 
 
 def clip_summary(clip: Clip) -> dict[str, Any]:

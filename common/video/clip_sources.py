@@ -1,6 +1,6 @@
 """The files and cameras that a run's settings name, not opened yet."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Final, NamedTuple
 
@@ -65,6 +65,18 @@ def numbers_of(names: Sequence[str]) -> dict[str, ViewerNumber]:
     own = {name: n + 1 for n, name in enumerate(CLIP_CAMERAS) if name in names}
     free = (n + 1 for n, name in enumerate(CLIP_CAMERAS) if name not in own)
     return {name: own[name] if name in own else next(free) for name in names}
+
+
+Offsets = Mapping[ViewerNumber, float]
+"""The user's delays of cameras, by their numbers, seconds."""
+
+
+def offsets_of(settings: Settings) -> Offsets:
+    """The delays that the settings give: each camera's own, and `offset_s` that of camera 2."""
+    numbers = numbers_of([*settings.cameras])
+    own = {numbers[name]: camera.offset_s for name, camera in settings.cameras.items()}
+    given = {number: late_s for number, late_s in own.items() if late_s is not None}
+    return given if settings.offset_s is None else {2: settings.offset_s, **given}
 
 
 def camera_words(settings: Settings) -> tuple[str, ...]:

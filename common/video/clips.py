@@ -17,7 +17,14 @@ from common.rig.absurd_rig import nearly_one_view, refuse_absurd
 from common.rig.camera import Rig
 from common.rig.rig_file import CalibrationError, fitted, load_rig
 from common.video.clip_facts import Clip, ClipView, Meta
-from common.video.clip_sources import NOTHING, ClipError, ViewSource, companions_folder, sources_of
+from common.video.clip_sources import (
+    NOTHING,
+    ClipError,
+    ViewSource,
+    companions_folder,
+    offsets_of,
+    sources_of,
+)
 from common.video.decoding import Decoder
 from common.video.frame_times import timed
 from common.video.pictures import DecoderDied, Source, Undecodable, VideoInfo, is_recorded
@@ -146,7 +153,7 @@ def _view(named: ViewSource, settings: Settings, meta: Meta, decoder: Decoder) -
         frames=info.frames if of_a_file else 0,
         capture_s=_told_s(meta, named) or (() if told_hz else info.shown_s),
         background=named.settings.background,
-        late_s=(settings.offset_s or 0.0) if named.number == 2 else 0.0,
+        late_s=offsets_of(settings).get(named.number, 0.0),
     )
 
 

@@ -19,7 +19,7 @@ from common.video.pictures import DecoderDied, Undecodable
 from integrator.frame_numbers import frame_times
 from runtime.offline.lockstep import Decoders, Tracked, measured_before, track_clip
 from runtime.offline.performance import Watch
-from runtime.offline.rig_check import clock_word
+from runtime.offline.rig_check import clock_words
 from runtime.overrides import overridden
 from runtime.store.clip_paths import ClipsFailed, run_names, without_plain_files
 from runtime.store.other_run import OtherRun, RunOf, refuse_other, run_of
@@ -115,7 +115,7 @@ def _tracked(
         tracked = track_clip(settings, decoders, given.views, watch=watch, course=course)
         for warning in tracked.facts["warnings"]:
             warn(console, f"{folder.name}: {warning}")
-        if word := clock_word(tracked.facts):
+        for word in clock_words(tracked.facts):
             say(console, f"{folder.name}: {word}")
         named = {"clip": folder.name, **belief_facts(tracked.bodies)}
         facts = {**tracked.facts, **named, **_run_of(settings).facts, **made_of}

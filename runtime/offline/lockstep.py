@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import msgspec
 
+from calibration.tracks.camera_clocks import Clocks
 from calibration.tracks.lateness import Clock
 from common.body.body import Bdp
 from common.bus.messages import MOST_VIEWS, Body, ScaleSource, ViewerNumber
@@ -22,6 +23,7 @@ from common.video.clip_facts import (
     uprights_of,
     whole_rig,
 )
+from common.video.clip_sources import offsets_of
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
 from common.video.frame_cache import FrameCache
@@ -43,12 +45,11 @@ from runtime.offline.performance import (
 from runtime.offline.rig_check import (
     Witness,
     clock_facts,
-    clock_seen,
+    clocks_seen,
     doubted,
     doubts,
-    is_late,
+    late_by,
     trust_facts,
-    unchecked,
 )
 from runtime.offline.rig_from_person import Looked, by_person, calibration_facts
 from runtime.offline.video_tracking import Heard, VideoInput, follow_clip, unseen
@@ -141,22 +142,27 @@ def track_clip(
         job = _Job(settings, method, decoders, sources, watch, course)
         looked = _as_left(by_person(clip, settings, method, decoders.of, sources), course)
         followed = _followed(looked, job, began)
-        clock = clock_seen(looked.clip, followed.witness)
-        if looked.clock is None and settings.offset_s is None and is_late(looked.clip, clock):
-            looked = looked._replace(clip=set_back(looked.clip, clock.late_s), clock=clock)
+        clocks = clocks_seen(looked.clip, followed.witness)
+        late_s = late_by(looked.clip, clocks, offsets_of(settings))
+        if not looked.clocks and any(late_s):
+            looked = looked._replace(clip=set_back(looked.clip, late_s), clocks=clocks)
             _begin_anew(job)
             followed = _followed(looked, job, began)
-            clock = clock_seen(looked.clip, followed.witness)
-        return _told(looked, job, followed, clock)
+            clocks = clocks_seen(looked.clip, followed.witness)
+        return _told(looked, job, followed, clocks)
 
 
 def _as_left(looked: Looked, course: Course) -> Looked:
     """With the clock of an interrupted run that was being tracked again."""
     left = course.work.resumed(STAGE, LockstepState)
-    late_s = left.late_s - looked.clip.views[-1].late_s if left else 0.0
-    if not late_s:
+    if left is None:
         return looked
-    return looked._replace(clip=set_back(looked.clip, late_s), clock=Clock(late_s))
+    views = zip(looked.clip.views[1:], left.late_s, strict=True)
+    late_s = [late - view.late_s for view, late in views]
+    if not any(late_s):
+        return looked
+    clocks = tuple(Clock(late) for late in late_s)
+    return looked._replace(clip=set_back(looked.clip, late_s), clocks=clocks)
 
 
 def _begin_anew(job: _Job) -> None:
@@ -172,21 +178,21 @@ def _followed(looked: Looked, job: _Job, began: float) -> _Followed:
     return _Followed(ready, done, witness)
 
 
-def _told(looked: Looked, job: _Job, followed: _Followed, clock: Clock) -> Tracked:
-    """The result, with the rig and the clock as now known."""
+def _told(looked: Looked, job: _Job, followed: _Followed, clocks: Clocks) -> Tracked:
+    """The result, with the rig and the clocks as now known."""
     clip, settings, (ready, done, witness) = looked.clip, job.settings, followed
     trust = trust_facts(
         clip,
         witness,
-        clock,
+        clocks,
         insisted=settings.trust_calibration,
         different_people=any(done.integrator.same.left_out),
     )
     facts = _facts(ready, done, job.sources) | calibration_facts(looked) | trust
-    facts |= moved_facts(done.bodies) | clock_facts(clip, looked.clock or clock, settings.offset_s)
-    facts["warnings"] += [*doubts(facts), *unchecked(clip)]
-    given = settings.offset_s is not None
-    return Tracked(clip, done.bodies if given else doubted(done.bodies, clock), facts)
+    given = offsets_of(settings)
+    facts |= moved_facts(done.bodies) | clock_facts(clip, looked.clocks or clocks, given)
+    facts["warnings"] += doubts(facts)
+    return Tracked(clip, doubted(done.bodies, clip, clocks, given), facts)
 
 
 def _in_two_passes(

@@ -66,8 +66,8 @@ class LockstepState(NamedTuple):
     """The next frame of each view that has had one."""
     spent: dict[str, float]
     """Seconds of each stage."""
-    late_s: float = 0.0
-    """Time by which the times of view 2 are set back."""
+    late_s: tuple[float, ...] = ()
+    """Time by which the times of each view after the first are set back."""
 
 
 class Performance(NamedTuple):
@@ -137,7 +137,7 @@ def _begun(ready: Prepared, calibration: LiveCalibration, witness: Witness) -> L
         guide=None,
         starts={},
         spent={"viewers": 0.0, "integrator": 0.0, "following": 0.0},
-        late_s=ready.clip.views[-1].late_s,
+        late_s=tuple(view.late_s for view in ready.clip.views[1:]),
     )
 
 

@@ -1,19 +1,22 @@
-"""Whether a run's rig is believable: both views' landmarks are kept and tested at its end."""
+"""Whether a run's rig is believable: all views' landmarks are kept and tested at its end."""
 
 from collections.abc import Sequence
 from typing import Final, NamedTuple
 
 import msgspec
 
-from calibration.tracks.joint_tracks import Row, Sighting, row_of, track_of_rows
-from calibration.tracks.lateness import UNSEEN, Clock, clock_of
+from calibration.tracks.camera_clocks import Clocks, clocks_of
+from calibration.tracks.joint_tracks import Row, Sightings, row_of, track_of_rows
+from calibration.tracks.lateness import Clock
 from common.bus.messages import Body, View, ViewerNumber
 from common.npz_file import Facts
-from common.video.clip_facts import Clip
+from common.rig.camera import Rig
+from common.video.clip_facts import Clip, ClipView
+from common.video.clip_sources import Offsets
 from viewer.captured_frame import CapturedFrame
 
 MOST_LATE_FRAMES: Final = 0.75
-"""Delay of view 2, frames, above which the clip is tracked again with its times set back."""
+"""Delay of a view, frames, above which the clip is tracked again with its times set back."""
 DOUBTED: Final = 0.05
 """Factor on the confidence of bodies from views whose times do not match."""
 MOST_FRAMES: Final = 3_000
@@ -48,63 +51,76 @@ class Witness:
             if len(rows) < MOST_FRAMES:
                 rows.append(row_of(report))
 
-    def sighting(self, clip: Clip) -> Sighting | None:
-        """Both views of a clip; None where it has one view, or more than two."""
-        if len(clip.views) != 2:
+    def sightings(self, clip: Clip) -> Sightings | None:
+        """All views of a clip; None where it has one."""
+        if len(clip.views) < 2:
             return None
-        first, second = (track_of_rows(self.seen.rows.get(v.number, [])) for v in clip.views)
-        return Sighting(first, second, clip.views[0].size)
+        tracks = tuple(track_of_rows(self.seen.rows.get(v.number, [])) for v in clip.views)
+        return Sightings(tracks, clip.views[0].size)
 
 
-def clock_seen(clip: Clip, witness: Witness) -> Clock:
-    """The clock of view 2, by all observations; unknown for one view, or more than two."""
-    sighting = witness.sighting(clip)
-    return UNSEEN if sighting is None else clock_of(sighting)
+def clocks_seen(clip: Clip, witness: Witness) -> Clocks:
+    """The clocks of the views after the first, by all observations."""
+    seen = witness.sightings(clip)
+    return () if seen is None else clocks_of(seen)
 
 
-def unchecked(clip: Clip) -> list[str]:
-    """The note for a clip with too many cameras to check clocks and calibration."""
-    if len(clip.views) <= 2:
-        return []
-    return [
-        f"of {len(clip.views)} cameras it is not checked whether they run together, nor whether "
-        "the calibration is believable: track two of them for that (--views 1,2)"
-    ]
-
-
-def is_late(clip: Clip, clock: Clock) -> bool:
-    """Whether view 2 is late by more than MOST_LATE_FRAMES."""
-    period_s = clip.every / clip.views[0].fps
-    return clock.is_found and abs(clock.late_s) > MOST_LATE_FRAMES * period_s
-
-
-def trust_facts(
-    clip: Clip, witness: Witness, clock: Clock, *, insisted: bool, different_people: bool = False
-) -> Facts:
-    """For the summary: the rig's assessment, and the cure where it is not believable.
+def late_by(clip: Clip, clocks: Clocks, given: Offsets) -> tuple[float, ...]:
+    """Delays of the views after the first that are found, and above MOST_LATE_FRAMES; else 0.
 
     Args:
         clip: The tracked clip.
-        witness: Observations of both views.
-        clock: Clock of view 2, as the clip has it.
+        clocks: Clocks of these views.
+        given: Cameras whose offset the user gives.
+    """
+    most_s = MOST_LATE_FRAMES * clip.every / clip.views[0].fps
+    return tuple(
+        clock.late_s
+        if clock.is_found and abs(clock.late_s) > most_s and view.number not in given
+        else 0.0
+        for view, clock in zip(clip.views[1:], clocks, strict=False)
+    )
+
+
+def trust_facts(
+    clip: Clip, witness: Witness, clocks: Clocks, *, insisted: bool, different_people: bool = False
+) -> Facts:
+    """For the summary: the rig's assessment, and the cure where it is not believable.
+
+    Of more than two cameras the pair is assessed that is believed least.
+
+    Args:
+        clip: The tracked clip.
+        witness: Observations of all views.
+        clocks: Clocks of the views after the first, as the clip has them.
         insisted: The user trusts the calibration: no advice is given.
         different_people: The views followed different people for a time: what contradicts the rig
             is not evidence against it.
     """
-    from calibration.gate.rig_fault import advice_on
-    from calibration.gate.rig_trust import trust_of
+    from calibration.gate.pair_trust import advice_of, least_believed
 
-    sighting = witness.sighting(clip)
-    if clip.rig is None or sighting is None or len(sighting.second.times_s) < 2:
+    seen = witness.sightings(clip)
+    if clip.rig is None or seen is None or all(len(t.times_s) < 2 for t in seen.tracks[1:]):
         return {}
-    period_s = clip.every / clip.views[0].fps
-    trust = trust_of(clip.rig, sighting, period_s, clock)
-    if trust is None or (different_people and not trust.believed):
+    period_s, names = clip.every / clip.views[0].fps, [view.name for view in clip.views]
+    rig = _renamed(clip.rig, names)
+    found = least_believed(rig, seen, period_s, clocks)
+    if found is None or (different_people and not found.trust.believed):
         return {}
+    one, other, trust = found
     if not insisted:
-        advice = advice_on(clip.rig, sighting, period_s, trust, clock, clip.views[1].late_s)
+        late_s = clip.views[other].late_s
+        advice = advice_of(found, rig, seen, period_s, clocks, late_s)
         trust = msgspec.structs.replace(trust, advice=advice)
-    return {"trust": msgspec.to_builtins(trust)}
+    several = {"cameras": [names[one], names[other]]} if len(names) > 2 else {}
+    return {"trust": {**msgspec.to_builtins(trust), **several}}
+
+
+def _renamed(rig: Rig, names: Sequence[str]) -> Rig:
+    """The rig with the names of the clip's cameras, by which the settings know them."""
+    cameras = zip(rig.cameras, names, strict=True)
+    own = (msgspec.structs.replace(camera, name=name) for camera, name in cameras)
+    return msgspec.structs.replace(rig, cameras=tuple(own))
 
 
 def doubts(facts: Facts) -> list[str]:
@@ -112,42 +128,53 @@ def doubts(facts: Facts) -> list[str]:
     trust = facts.get("trust")
     if not trust or not trust["advice"]:
         return []
+    views, late = "views", "view 2"
+    if "cameras" in trust:
+        views, late = " and ".join(trust["cameras"]), trust["cameras"][1]
     told = (
-        "views {apart_mm:.0f} mm ({apart_px:.1f} px) apart, soles {soles_mm:+.0f} mm over the "
+        "{views} {apart_mm:.0f} mm ({apart_px:.1f} px) apart, soles {soles_mm:+.0f} mm over the "
         "floor, a person of {stature_m:.2f} m, facings {facing_deg:.0f} degrees apart, motions "
-        "{motion_mm:.0f} mm, view 2 {late_frames:+.1f} frames late; {advice}"
+        "{motion_mm:.0f} mm, {late} {late_frames:+.1f} frames late; {advice}"
     )
-    return [f"the calibration is not believable: {told.format(**trust)}"]
+    said = told.format(views=views, late=late, **trust)
+    return [f"the calibration is not believable: {said}"]
 
 
-def clock_facts(clip: Clip, clock: Clock, given_s: float | None) -> Facts:
-    """For the summary: the time by which view 2 was set back, and other possible delays.
+def clock_facts(clip: Clip, clocks: Clocks, given: Offsets) -> Facts:
+    """For the summary: the time by which each view after the first was set back, and other
+    possible delays. Of two views `clock`, of more `clocks`, by camera.
 
     Args:
         clip: The tracked clip.
-        clock: Clock of view 2, by the times of its files and the user's offset.
-        given_s: The user's offset.
+        clocks: Clocks of these views, by the times of their files and the user's offsets.
+        given: The user's offsets, by camera number.
     """
-    if len(clip.views) != 2:
-        return {}
-    state = "given" if given_s is not None else clock.state
+    told = {
+        view.name: _told(view, clock, view.number in given)
+        for view, clock in zip(clip.views[1:], clocks, strict=False)
+    }
+    if len(clip.views) == 2:
+        return {"clock": told[clip.views[1].name]} if told else {}
+    return {"clocks": told} if told else {}
+
+
+def _told(view: ClipView, clock: Clock, is_given: bool) -> Facts:
+    state = "given" if is_given else clock.state
     rivals_s = sorted((clock.late_s, *clock.rivals_s)) if clock.rivals_s else []
-    applied_s = round(clip.views[1].late_s, 4)
     may_be_s = [round(late_s, 2) + 0.0 for late_s in rivals_s] if state == "ambiguous" else []
-    on_time = state != "ambiguous" or clock.may_be_on_time
     return {
-        "clock": {
-            "state": state,
-            "applied_s": applied_s,
-            "may_be_s": may_be_s,
-            "may_be_on_time": on_time,
-        }
+        "state": state,
+        "applied_s": round(view.late_s, 4),
+        "may_be_s": may_be_s,
+        "may_be_on_time": state != "ambiguous" or clock.may_be_on_time,
     }
 
 
-def doubted(bodies: Sequence[Body], clock: Clock) -> Sequence[Body]:
-    """The bodies, with little confidence where view 2 has an unknown delay."""
-    if clock.state != "ambiguous" or clock.may_be_on_time:
+def doubted(bodies: Sequence[Body], clip: Clip, clocks: Clocks, given: Offsets) -> Sequence[Body]:
+    """The bodies, with little confidence where a view has an unknown delay."""
+    timed = zip(clip.views[1:], clocks, strict=False)
+    unknown = [clock for view, clock in timed if view.number not in given]
+    if all(clock.state != "ambiguous" or clock.may_be_on_time for clock in unknown):
         return bodies
     return [
         msgspec.structs.replace(body, confidence=tuple(DOUBTED * each for each in body.confidence))
@@ -155,16 +182,23 @@ def doubted(bodies: Sequence[Body], clock: Clock) -> Sequence[Body]:
     ]
 
 
-def clock_word(facts: Facts) -> str:
-    """The warning about the clock of view 2; "" where the files' times may be right."""
-    told = facts.get("clock")
-    if not told or (told["may_be_on_time"] and not told["applied_s"]):
+def clock_words(facts: Facts) -> list[str]:
+    """The warnings about views' clocks; none where the files' times may be right."""
+    if "clock" in facts:
+        said = _word("view 2", facts["clock"], "--offset SECONDS")
+        return [said] if said else []
+    told = facts.get("clocks", {}).items()
+    words = (_word(name, each, f"cameras.{name}.offset_s in the settings") for name, each in told)
+    return [*filter(None, words)]
+
+
+def _word(view: str, told: Facts, how: str) -> str:
+    if told["may_be_on_time"] and not told["applied_s"]:
         return ""
     if told["state"] != "ambiguous":
-        return f"view 2 is {told['applied_s']:+.2f} s late: its times were set back by that"
+        return f"{view} is {told['applied_s']:+.2f} s late: its times were set back by that"
     several = ", ".join(f"{late_s:+.2f}" for late_s in told["may_be_s"])
     return (
-        f"how late view 2 is, the motion does not show, as a gait repeats itself ({several} s): "
-        "its times were left as they are, and joints are hardly believed; say it by --offset "
-        "SECONDS"
+        f"how late {view} is, the motion does not show, as a gait repeats itself ({several} s): "
+        f"its times were left as they are, and joints are hardly believed; say it by {how}"
     )

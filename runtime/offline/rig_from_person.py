@@ -6,6 +6,7 @@ from typing import Final, NamedTuple
 import msgspec
 
 from calibration.person.rig_quality import PersonCalibration
+from calibration.tracks.camera_clocks import Clocks
 from calibration.tracks.joint_tracks import Sighting, track_of
 from calibration.tracks.lateness import LEAST_LATE, Clock, clock_of
 from common.bus.messages import View, ViewerNumber
@@ -33,8 +34,9 @@ class Looked(NamedTuple):
     """With the rig, if found, and with the clock of view 2 corrected."""
     found: PersonCalibration | None = None
     warning: str = ""
-    clock: Clock | None = None
-    """Clock of view 2, by its own times; None where it was not estimated."""
+    clocks: Clocks = ()
+    """Clocks of the views after the first, by their own times; none where they were not
+    estimated."""
 
 
 def sighting_of(
@@ -96,9 +98,9 @@ def by_person(
         found = calibrated_by_person((sighting,), settings.body.stature_m, clocks=(clock,))
     except CalibrationError as error:
         told = f"not calibrated by the person: {error}"
-        return Looked(on_time(clip, clock, clock.late_s), None, told, clock)
+        return Looked(on_time(clip, clock, clock.late_s), None, told, (clock,))
     clip = on_time(msgspec.structs.replace(clip, rig=found.rig), clock, found.late_s[0])
-    return Looked(clip, found, nearly_one_view(found.rig), clock)
+    return Looked(clip, found, nearly_one_view(found.rig), (clock,))
 
 
 def on_time(clip: Clip, clock: Clock, late_s: float) -> Clip:
@@ -111,7 +113,7 @@ def on_time(clip: Clip, clock: Clock, late_s: float) -> Clip:
     """
     period_s = clip.every / clip.views[1].fps
     is_late = clock.is_found and abs(late_s) >= LEAST_LATE * period_s
-    return set_back(clip, late_s) if is_late else clip
+    return set_back(clip, (late_s,)) if is_late else clip
 
 
 def calibration_facts(looked: Looked) -> Facts:
