@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from common.rig.camera import Camera, Rig, project
 from synth.motion.motions import POSTURES, Motion, movement, performance
+from synth.motion.on_spot import on_spot
 from synth.motion.streaming import streamed
 from synth.person.people import MEASURE_NAMES, Person, measure_vector, person
 from synth.person.skeleton import ANGLES, JOINTS
@@ -27,7 +28,7 @@ Packed = NDArray[np.uint8]
 """Masks packed by `np.packbits(mask, axis=-1)`."""
 
 PHASES: Final = ("empty", "tpose", "transition", "motion")
-ALONE: Final = ("free", "fall", "stream")
+ALONE: Final = ("free", "fall", "stream", "spot")
 """Motions that are one take each, not one per posture."""
 ROOM_SEED: Final = 7919
 """Factor that separates the room seeds of successive sets: a prime larger than any set."""
@@ -40,8 +41,9 @@ class SynthError(ValueError):
 class ClipSet(NamedTuple):
     """Content of a set of clips."""
 
-    motion: Literal["postures", "free", "fall", "stream"]
-    """The named postures; free motion; free motion with falls; all postures in one take."""
+    motion: Literal["postures", "free", "fall", "stream", "spot"]
+    """The named postures; free motion; free motion with falls; all postures in one take; on one
+    spot from the first frame."""
     performers: int = 1
     """Number of people; the first of seed s is person(s * performers)."""
     takes: int = 1
@@ -52,6 +54,8 @@ class ClipSet(NamedTuple):
     """The postures; not requested where the motion is free or a fall."""
     cameras: int = 2
     """Number of cameras, 1 to MOST_CAMERAS."""
+    moving: bool = False
+    """Whether screens play, and trees sway, behind the person."""
 
 
 class Filming(NamedTuple):
@@ -62,6 +66,8 @@ class Filming(NamedTuple):
     room_seed: int
     seed: int
     """Seed of people, motion and noise: one seed gives the same clips, byte for byte."""
+    moving: bool = False
+    """Whether screens play, and trees sway, behind the person."""
 
 
 def write_set(
@@ -85,7 +91,7 @@ def write_set(
         SynthError: When nothing would be written, a posture or the motion is unknown, or the
             calibration of other cameras would be lost.
     """
-    motion, performers, takes, seed, postures, cameras = wanted
+    motion, performers, takes, seed, postures, cameras, moving = wanted
     names = (motion,) if motion in ALONE else postures
     _refuse_what_cannot_be(wanted, size, names)
     rig = rig_around(size, cameras, seed)
@@ -99,10 +105,12 @@ def write_set(
         own = take + 1000 * seed
         if motion == "stream":
             moved = streamed(someone, own, FPS, postures)
+        elif motion == "spot":
+            moved = on_spot(someone, own, FPS)
         else:
             moved = performance(someone, posture, own, FPS)
         folders.append(out / clip_name(someone, posture, take))
-        filming = Filming(rig, seed * ROOM_SEED + number, own)
+        filming = Filming(rig, seed * ROOM_SEED + number, own, moving)
         write_clip(folders[-1], someone, moved, filming, take)
         if progress is not None:
             progress(done, len(jobs))
@@ -128,9 +136,10 @@ def write_clip(folder: Path, someone: Person, motion: Motion, filming: Filming, 
     Raises:
         SynthError: When a video cannot be written there.
     """
-    rig, room_seed, seed = filming
+    rig, room_seed, seed, moving = filming
     folder.mkdir(parents=True, exist_ok=True)
-    masks = filmed(folder, render(someone, motion, rig, room_seed, seed), rig, motion.fps)
+    shots = render(someone, motion, rig, room_seed, seed, moving)
+    masks = filmed(folder, shots, rig, motion.fps)
     meta = meta_of(someone, motion, filming, take)
     (folder / "meta.json").write_text(json.dumps(meta, indent=1) + "\n")
     gain = exposures(len(masks), len(motion.phase), seed, motion.fps)
@@ -197,6 +206,7 @@ def meta_of(someone: Person, motion: Motion, filming: Filming, take: int) -> dic
         "posture_id": _number(motion.posture),
         "take": take,
         "room": filming.room_seed,
+        "moving": filming.moving,
         "fps": motion.fps,
         "n_frames": len(motion.phase),
         "phases": dict(zip(PHASES, counts, strict=True)),
@@ -247,7 +257,7 @@ def _number(posture: str) -> int:
 
 
 def _refuse_what_cannot_be(wanted: ClipSet, size: tuple[int, int], names: tuple[str, ...]) -> None:
-    motion, performers, takes, seed, _, cameras = wanted
+    motion, performers, takes, seed, _, cameras, _ = wanted
     if motion not in ("postures", *ALONE):
         raise SynthError(f"motion must be postures, {', '.join(ALONE)}, got {motion!r}")
     for what, number in (("performers", performers), ("takes", takes)):

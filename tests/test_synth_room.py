@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from synth.picture.random_rig import random_rig, rig_around
-from synth.picture.synth_room import _furniture, _walls, _walls_seen, furnished
+from synth.picture.synth_room import furnished
+from synth.things.furnishing import furniture, walls_of, walls_seen
 
 
 @pytest.mark.slow
@@ -25,8 +26,8 @@ def test_things_stand_along_every_wall_that_is_seen_behind_a_person(
 ) -> None:
     """Each thing touches a wall from inside."""
     rng = np.random.default_rng(6)
-    (room,) = _walls(rng, rig_around((80, 60), cameras, 6))
-    things = _furniture(rng, _walls_seen(room, cameras))
+    (room,) = walls_of(rng, rig_around((80, 60), cameras, 6))
+    things = furniture(rng, walls_seen(room, cameras))
     touched = set()
     for thing in things:
         sides = [(axis, 0) for axis in (0, 2) if thing.low[axis] == room.low[axis]]

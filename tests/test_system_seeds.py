@@ -30,7 +30,6 @@ from synth.picture import (
     picture_examples,
     raster,
     silhouette_examples,
-    textures,
 )
 from synth.picture.composites import composite
 from synth.picture.example_poses import poses_deg
@@ -40,6 +39,7 @@ from synth.picture.random_rig import random_rig, rig_about
 from synth.picture.render import render
 from synth.picture.shown_joints import shown_joints
 from synth.picture.synth_room import furnished, lamp_pixels, lit_from
+from synth.things.textures import finish, painted
 
 MAKERS = (falling, footing, moves, roaming, portrait, rings, skeleton, tailor, raster)
 """What the others call: a change in one of these is a change of what seeds make, too."""
@@ -124,8 +124,8 @@ def papered() -> list[Any]:
         axis, end = n % 3, (low, high)[n // 3 % 2]
         points[n, axis] = end[axis]
     for kind in (*["room"] * 8, "shelf", "chest", "picture", "curtain", "door"):
-        look = textures.finish(kind, rng)
-        made += [look, textures.painted(look, points, low, high)]
+        look = finish(kind, rng)
+        made += [look, painted(look, points, low, high)]
     return made
 
 

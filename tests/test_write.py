@@ -54,9 +54,9 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(write, "render", rendered)
-        write_clip(out, person(2), brief(), Filming(RIG, 17, 1003), 3)
-    ((someone, motion, rig, room_seed, seed),) = asked
-    assert (someone, rig, room_seed, seed) == (person(2), RIG, 17, 1003)
+        write_clip(out, person(2), brief(), Filming(RIG, 17, 1003, True), 3)
+    ((someone, motion, rig, room_seed, seed, moving),) = asked
+    assert (someone, rig, room_seed, seed, moving) == (person(2), RIG, 17, 1003, True)
     assert motion.posture == "walk_sideways"
     return out
 
@@ -242,7 +242,7 @@ def test_a_calibration_of_other_cameras_is_not_lost(
 @pytest.mark.parametrize(
     ("wanted", "size", "said"),
     [
-        (ClipSet("dance"), SIZE, "motion must be postures, free, fall, stream, got 'dance'"),  # type: ignore[arg-type]
+        (ClipSet("dance"), SIZE, "motion must be postures, free, fall, stream, spot, got 'dance'"),  # type: ignore[arg-type]
         (ClipSet("free", performers=0), SIZE, "performers must be at least 1, got 0"),
         (ClipSet("free", takes=0), SIZE, "takes must be at least 1, got 0"),
         (ClipSet("free", cameras=0), SIZE, "cameras must be 1 to 8, got 0"),

@@ -220,6 +220,7 @@ _FIVE: Final[dict[str, Movement]] = {
     "fall": "free",
     "stream": "free",
     "scene": "free",
+    "spot": "free",
 }
 
 

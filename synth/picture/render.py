@@ -75,7 +75,9 @@ class _Scene(NamedTuple):
     """Whether the room's walls and furniture hide people behind them."""
 
 
-def render(someone: Person, motion: Motion, rig: Rig, room_seed: int, seed: int) -> Iterator[Shot]:
+def render(
+    someone: Person, motion: Motion, rig: Rig, room_seed: int, seed: int, moving: bool = False
+) -> Iterator[Shot]:
     """The frames of a performance, whose masks are (h, w): one person before the room.
 
     Args:
@@ -84,8 +86,9 @@ def render(someone: Person, motion: Motion, rig: Rig, room_seed: int, seed: int)
         rig: The cameras; they determine the room's size.
         room_seed: Seed of the room.
         seed: Seed of the differences between takes: noise, exposure.
+        moving: Whether screens play, and trees sway, behind the person.
     """
-    scene = _scene_of((Part(someone, motion),), rig, room_seed, solid=False)
+    scene = _scene_of((Part(someone, motion),), rig, room_of(room_seed, rig, moving), solid=False)
     for frames, masks in _shots(scene, motion.fps, seed):
         yield Shot(frames, tuple(mask[0] for mask in masks))
 
@@ -99,12 +102,13 @@ def render_scene(parts: Sequence[Part], rig: Rig, room_seed: int, seed: int) -> 
         room_seed: As for `render`.
         seed: As for `render`.
     """
-    return _shots(_scene_of(parts, rig, room_seed, solid=True), parts[0].motion.fps, seed)
+    scene = _scene_of(parts, rig, room_of(room_seed, rig), solid=True)
+    return _shots(scene, parts[0].motion.fps, seed)
 
 
-def _scene_of(parts: Sequence[Part], rig: Rig, room_seed: int, *, solid: bool) -> _Scene:
+def _scene_of(parts: Sequence[Part], rig: Rig, room: Room, *, solid: bool) -> _Scene:
     scale = max(2, round(FINE_PX / rig.width))
-    return _Scene(tuple(map(_actor, parts)), room_of(room_seed, rig), rig, scale, solid)
+    return _Scene(tuple(map(_actor, parts)), room, rig, scale, solid)
 
 
 def _actor(part: Part) -> _Actor:
@@ -123,16 +127,17 @@ def _shots(scene: _Scene, fps: float, seed: int) -> Iterator[Shot]:
         corners = rng.integers(0, 61, (cameras, 2))
         bodies, lit = _bodies(scene, i), _light(scene, i)
         noises = [grain[y : y + rig.height, x : x + rig.width] for y, x in corners]
+        rooms = [scene.room.at(n, i / fps) for n in range(cameras)]
         frames = [
-            _exposed(scene, n, bodies[n], lit[n], gains[n, i], noises[n]) for n in range(cameras)
+            _exposed(rooms[n], bodies[n], lit[n], gains[n, i], noises[n]) for n in range(cameras)
         ]
         yield Shot(tuple(frames), tuple(masks for _, masks in bodies))
 
 
 @lru_cache(maxsize=2)
-def room_of(seed: int, rig: Rig) -> Room:
+def room_of(seed: int, rig: Rig, moving: bool = False) -> Room:
     """A performer's takes share a room; furnishing one costs as much as twenty frames."""
-    return furnished(seed, rig)
+    return furnished(seed, rig, moving)
 
 
 def palette(look: Look) -> NDArray[np.float64]:
@@ -281,14 +286,13 @@ def _lamp_mask(there: list[_Actor], i: int, lamp: Lamp, blur_px: int) -> NDArray
 
 
 def _exposed(
-    scene: _Scene,
-    n: int,
+    room: NDArray[np.float32],
     body: Coverage,
     lit: NDArray[np.float32],
     gain: float,
     noise: NDArray[np.float32],
 ) -> Image:
-    """The picture of camera n."""
-    frame = np.empty((scene.rig.height, scene.rig.width, 3), np.uint8)
-    expose(scene.room.pictures[n], lit, body[0], gain, noise, frame)
+    """A camera's picture."""
+    frame = np.empty(room.shape, np.uint8)
+    expose(room, lit, body[0], gain, noise, frame)
     return frame

@@ -10,7 +10,9 @@ from numpy.typing import NDArray
 
 from common.body.body import Vector
 from common.rig.camera import Camera, Rig, centre
-from synth.picture.textures import Finish, finish, painted
+from synth.things.furnishing import Cuboid, furniture, moving_things, walls_of, walls_seen
+from synth.things.moving_pictures import MOVING
+from synth.things.textures import painted
 
 Picture = NDArray[np.float32]
 
@@ -28,37 +30,10 @@ SELF_SHADE: Final = 0.01
 on it."""
 LAMP_SPREAD_M: Final = 0.25
 """Half the size of the lamp: furniture casts soft shadows too."""
-BEHIND_M: Final = 0.6
-"""Depth of the room behind each camera."""
-FURNISHED_M: Final = (-1.9, 1.7)
-"""Range along the walls behind the person in which objects stand."""
-WIDEST_M: Final = 0.9
-"""Largest width of an object along a wall."""
 FLOOR_M: Final = 0.02
 """Height up to which the room hides no person: soles lie on the floor."""
 SAMPLES: Final = 2
 """Rays per pixel, each way."""
-
-
-class Cuboid(NamedTuple):
-    """An object in the room: an axis-aligned box with one finish."""
-
-    low: Vector
-    high: Vector
-    finish: Finish
-
-
-class Wall(NamedTuple):
-    """A wall, and the stretch of it for objects."""
-
-    axis: int
-    """Axis of its normal: 0 for x, 2 for z."""
-    at_m: float
-    inwards: float
-    """Sign of the normal into the room."""
-    from_m: float
-    to_m: float
-    """Start of the objects along the other axis."""
 
 
 class Lamp(NamedTuple):
@@ -68,6 +43,18 @@ class Lamp(NamedTuple):
     rotation: NDArray[np.float64]
     """World to lamp; z points at the middle."""
     focal_px: float
+
+
+class Playing(NamedTuple):
+    """A thing on a wall whose picture moves, in one camera's picture."""
+
+    thing: Cuboid
+    pixels: NDArray[np.int64]
+    """(k,) flat indices of the pixels that it fills."""
+    points_m: NDArray[np.float64]
+    """(k, 3) what they show of it."""
+    light: Vector
+    """(k,) brightness there."""
 
 
 class Room(NamedTuple):
@@ -84,23 +71,50 @@ class Room(NamedTuple):
     low: Vector
     """(3,) the walls' lower corner, metres; so is the upper one, `high`."""
     high: Vector
+    playing: tuple[tuple[Playing, ...], ...]
+    """[camera]: what moves."""
+
+    def at(self, camera: int, time_s: float) -> Picture:
+        """The room in a camera's picture at a time, (h, w, 3)."""
+        if not self.playing[camera]:
+            return self.pictures[camera]
+        picture = self.pictures[camera].copy()
+        for (low, high, look), pixels, points_m, light in self.playing[camera]:
+            colours = painted(look, points_m, low, high, time_s) * light[:, None]
+            picture.reshape(-1, 3)[pixels] = np.clip(colours, 0, 255)
+        return picture
 
 
-def furnished(seed: int, rig: Rig) -> Room:
-    """The room of a seed, for the cameras of a rig."""
+def furnished(seed: int, rig: Rig, moving: bool = False) -> Room:
+    """The room of a seed, for the cameras of a rig.
+
+    Args:
+        seed: The same seed gives the same room.
+        rig: The cameras.
+        moving: Whether screens play, and trees sway, on the walls behind the person.
+    """
     rng = np.random.default_rng([seed, 1])
-    boxes = _walls(rng, rig)
-    boxes += _furniture(rng, _walls_seen(boxes[0], len(rig.cameras)))
+    boxes = walls_of(rng, rig)
+    walls = walls_seen(boxes[0], len(rig.cameras))
+    boxes += furniture(rng, walls)
+    if moving:
+        boxes += moving_things(np.random.default_rng([seed, 4]), walls)
     key = np.array([rng.uniform(-2.2, 2.2), rng.uniform(2.8, 3.8), rng.uniform(1.6, 3.0)])
     lamps = (_lamp(key), _lamp(np.array([0.05, 5.5, 0.05])))
-    pictures, maps, near = [], [], []
+    pictures, maps, near, playing = [], [], [], []
     for n, camera in enumerate(rig.cameras):
-        picture, points = _seen(rig, n, boxes, key, rng)
+        picture, points, moved = _seen(rig, n, boxes, key, rng)
         pictures.append(picture)
         maps.append(tuple(_shadow_map(lamp, points) for lamp in lamps))
         nearness = 1.0 / (points @ np.array(camera.R)[2] + camera.t[2])
         near.append(np.where(points[..., 1] > FLOOR_M, nearness, 0.0))
-    return Room(tuple(pictures), lamps, tuple(maps), tuple(near), boxes[0].low, boxes[0].high)
+        playing.append(moved)
+    seen, low, high = (
+        (tuple(pictures), lamps, tuple(maps), tuple(near)),
+        boxes[0].low,
+        boxes[0].high,
+    )
+    return Room(*seen, low, high, tuple(playing))
 
 
 def _shadow_map(lamp: Lamp, points_m: NDArray[np.float64]) -> NDArray[np.float32]:
@@ -128,63 +142,10 @@ def _lamp(place: Vector) -> Lamp:
     return Lamp(place, np.stack([x, np.cross(z, x), z]), focal)
 
 
-def _walls(rng: np.random.Generator, rig: Rig) -> list[Cuboid]:
-    """The room itself, the first box: it is seen from inside, and contains all cameras."""
-    places = np.stack([centre(camera) for camera in rig.cameras])
-    far = max(5.0, float(np.abs(places).max())) + BEHIND_M
-    low = np.array([-far, 0.0, -rng.uniform(1.5, 2.5)])
-    high = np.array([rng.uniform(1.5, 2.5), rng.uniform(2.5, 2.9), far])
-    low = np.minimum(low, places.min(axis=0) - [BEHIND_M, 0.0, BEHIND_M])
-    high = np.maximum(high, places.max(axis=0) + BEHIND_M)
-    return [Cuboid(low, high, finish("room", rng))]
-
-
-def _walls_seen(room: Cuboid, cameras: int) -> list[Wall]:
-    """The walls at the back and at the person's left, which two cameras see; the others with
-    more cameras."""
-    low, high, last = room.low.tolist(), room.high.tolist(), (room.high - WIDEST_M).tolist()
-    walls = [Wall(2, low[2], 1.0, *FURNISHED_M), Wall(0, high[0], -1.0, *FURNISHED_M)]
-    if cameras > 2:
-        walls += [Wall(2, high[2], -1.0, low[0], last[0]), Wall(0, low[0], 1.0, low[2], last[2])]
-    return walls
-
-
-def _furniture(rng: np.random.Generator, walls: list[Wall]) -> list[Cuboid]:
-    """Objects along the walls."""
-    boxes = []
-    for wall in walls:
-        along = wall.from_m
-        while along < wall.to_m:
-            kind = str(rng.choice(["shelf", "chest", "picture", "curtain", "door", "none"]))
-            wide = float(rng.uniform(0.45, WIDEST_M))
-            if kind != "none":
-                boxes.append(_against(rng, kind, along, wide, wall))
-            along += wide + float(rng.uniform(0.15, 0.7))
-    return boxes
-
-
-_HEIGHTS: Final = {
-    "shelf": (0.0, 0.0, 0.9, 1.5, 0.3),
-    "chest": (0.0, 0.0, 0.45, 0.8, 0.4),
-    "picture": (1.1, 1.4, 1.55, 1.8, 0.03),
-    "curtain": (0.1, 0.4, 1.6, 2.0, 0.05),
-    "door": (0.0, 0.0, 1.9, 2.05, 0.04),
-}
-"""Ranges of the lower edge, of the upper edge, and of the depth: metres."""
-
-
-def _against(rng: np.random.Generator, kind: str, along: float, wide: float, wall: Wall) -> Cuboid:
-    bottom_from, bottom_to, top_from, top_to, deep = _HEIGHTS[kind]
-    bottom, top = rng.uniform(bottom_from, bottom_to), rng.uniform(top_from, top_to)
-    low, high = np.array([along, bottom, along]), np.array([along + wide, top, along + wide])
-    low[wall.axis], high[wall.axis] = sorted((wall.at_m, wall.at_m + wall.inwards * deep))
-    return Cuboid(low, high, finish(kind, rng))
-
-
 def _seen(
     rig: Rig, n: int, boxes: list[Cuboid], key: Vector, rng: np.random.Generator
-) -> tuple[Picture, NDArray[np.float64]]:
-    """The picture (h, w, 3) and the room's point in each pixel (h, w, 3)."""
+) -> tuple[Picture, NDArray[np.float64], tuple[Playing, ...]]:
+    """The picture (h, w, 3), the room's point in each pixel (h, w, 3), and what moves."""
     camera, size = rig.cameras[n], (rig.height * SAMPLES, rig.width * SAMPLES)
     rays = _rays(camera, size)
     origin = centre(camera)
@@ -199,13 +160,35 @@ def _seen(
     for i, box in enumerate(boxes):
         here = which == i
         colours[here] = painted(box.finish, points[here], box.low, box.high)
-    colours *= _light(points, boxes, key, rng)[:, None]
+    light = _light(points, boxes, key, rng)
+    colours *= light[:, None]
     shape = (rig.width, rig.height)
     picture = cv2.resize(
         colours.reshape(*size, 3).astype(np.float32), shape, interpolation=cv2.INTER_AREA
     )
     centres = points.reshape(*size, 3)[SAMPLES // 2 :: SAMPLES, SAMPLES // 2 :: SAMPLES]
-    return np.clip(picture, 0, 255), centres
+    seen = _by_pixel(np.column_stack([points, light]), size)
+    filled = _by_pixel(which[:, None].astype(float), size)[..., 0]
+    playing = [
+        _playing(box, (filled == i).all(axis=1), seen)
+        for i, box in enumerate(boxes)
+        if box.finish.kind in MOVING
+    ]
+    return np.clip(picture, 0, 255), centres, tuple(playing)
+
+
+def _by_pixel(values: NDArray[np.float64], size: tuple[int, int]) -> NDArray[np.float64]:
+    """Values of samples (h w, k) as those of each pixel: (pixels, SAMPLES^2, k)."""
+    high, wide = size[0] // SAMPLES, size[1] // SAMPLES
+    cut = values.reshape(high, SAMPLES, wide, SAMPLES, -1).swapaxes(1, 2)
+    return cut.reshape(high * wide, SAMPLES * SAMPLES, -1)
+
+
+def _playing(box: Cuboid, filled: NDArray[np.bool_], seen: NDArray[np.float64]) -> Playing:
+    """The pixels that a box fills, by their samples' points and light, (pixels, samples, 4)."""
+    pixels = np.flatnonzero(filled)
+    mean = seen[pixels].mean(axis=1)
+    return Playing(box, pixels, mean[:, :3], mean[:, 3])
 
 
 def _rays(camera: Camera, size: tuple[int, int]) -> NDArray[np.float64]:

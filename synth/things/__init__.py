@@ -1,1 +1,1 @@
-"""Things that hide people in pictures."""
+"""Things in rooms: furniture, textures, pictures that move, and what hides people in pictures."""

@@ -92,15 +92,14 @@ def line_of_runs(clips: Mapping[str, Mapping[str, Any]], out: Path) -> str:
 def synth(
     out: Out,
     motion: Annotated[
-        Literal["postures", "free", "fall", "stream"] | None,
-        typer.Option(help="The 15 postures, free motion, falls, or all postures in one take."),
+        Literal["postures", "free", "fall", "stream", "spot"] | None,
+        typer.Option(help="15 postures, free, falls, postures in one take, always on one spot."),
     ] = None,
     performers: Annotated[
         int | None, typer.Option(min=1, max=1000, help="How many people, one in each clip.")
     ] = None,
     people: Annotated[
-        int | None,
-        typer.Option(help="Scenes instead: so many people in a room at once, 1 to 5."),
+        int | None, typer.Option(help="Scenes instead: so many people in a room at once, 1 to 5.")
     ] = None,
     seconds: Annotated[float | None, typer.Option(help="How long a scene of --people is.")] = None,
     takes: Annotated[
@@ -116,6 +115,7 @@ def synth(
     cameras: Annotated[
         int, typer.Option(help="How many, 1 to 8: the paper's two, then more around the person.")
     ] = 2,
+    moving: Annotated[bool | None, typer.Option("--moving", help="Screens and trees move.")] = None,
     json_wanted: JsonWanted = False,
 ) -> None:
     """Make clips of synthetic people with ground truth.
@@ -133,9 +133,11 @@ def synth(
     if people is None:
         _refuse(("--seconds", seconds), because="needs --people: other clips have their length")
         number = 1 if performers is None else performers
-        wanted = ClipSet(motion or "postures", number, takes, seed, tuple(posture or ()), cameras)
+        some = (motion or "postures", number, takes, seed, tuple(posture or ()), cameras)
+        wanted = ClipSet(*some, moving=bool(moving))
     else:
-        alone = (("--motion", motion), ("--performers", performers), ("--posture", posture))
+        whose, what = ("--performers", performers), (("--motion", motion), ("--posture", posture))
+        alone = (*what, whose, ("--moving", moving))
         _refuse(*alone, because="is of clips of one person: leave it or --people out")
         wanted = SceneSet(people, 10.0 if seconds is None else seconds, takes, seed, cameras)
     made = make_clips(out, wanted, size, console)
