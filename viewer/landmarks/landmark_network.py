@@ -83,22 +83,32 @@ def _peaks(maps: Floats | NDArray[np.float32]) -> tuple[Floats, Floats]:
     Between cells a peak is that of the bell through the three sums of cells about the highest:
     maps are taught to be bells, and a mean over few cells would lean to the middle one.
     """
-    flat = maps.reshape(len(maps), -1)
-    highest = flat.argmax(axis=1)
-    below = flat - flat[np.arange(len(flat)), highest, None]
-    shares = np.where(below >= -DEEP, np.exp(below), 0.0).astype(np.float64)
     joints, about = np.empty((len(maps), 2, 2)), np.empty((len(maps), 2))
-    _fill_peaks(shares.reshape(maps.shape), highest, joints, about)
-    return joints, about / shares.sum(axis=1, keepdims=True)
+    _fill_peaks(maps, joints, about)
+    return joints, about
 
 
 @compiled
-def _fill_peaks(shares: Floats, highest: NDArray[np.int64], joints: Floats, about: Floats) -> None:
-    for j in range(len(shares)):
-        row, column = divmod(highest[j], CELLS)
-        about[j, 0] = _peak(shares[j], row, column, joints[j, 0])
-        row, column = _highest_apart(shares[j], row, column)
-        about[j, 1] = _peak(shares[j], row, column, joints[j, 1])
+def _fill_peaks(maps: Floats | NDArray[np.float32], joints: Floats, about: Floats) -> None:
+    shares = np.empty((CELLS, CELLS))
+    for j in range(len(maps)):
+        row, column = divmod(maps[j].argmax(), CELLS)
+        total = _set_shares(maps[j], maps[j, row, column], shares)
+        about[j, 0] = _peak(shares, row, column, joints[j, 0]) / total
+        row, column = _highest_apart(shares, row, column)
+        about[j, 1] = _peak(shares, row, column, joints[j, 1]) / total
+
+
+@compiled
+def _set_shares(logits: Floats | NDArray[np.float32], highest: float, shares: Floats) -> float:
+    """The shares of cells (CELLS, CELLS), 1 the highest; their sum."""
+    total = 0.0
+    for i in range(CELLS):
+        for k in range(CELLS):
+            below = logits[i, k] - highest
+            shares[i, k] = np.exp(below) if below >= -DEEP else 0.0
+            total += shares[i, k]
+    return total
 
 
 @compiled

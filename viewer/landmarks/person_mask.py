@@ -31,7 +31,7 @@ class PersonMask(NamedTuple):
             probabilities: Between 0 and 1.
         """
         logits = self.logits_over(shape)
-        return [(logits >= _logit(each)).astype(np.uint8) for each in probabilities]
+        return [(logits >= _logit(each)).view(np.uint8) for each in probabilities]
 
     def logits_over(self, shape: tuple[int, ...]) -> NDArray[np.float32]:
         """(H, W) log odds that a pixel shows the person; minus infinity outside of the window.

@@ -113,7 +113,8 @@ def step(
     seen: dict[int, Landmarks] = {}
     numbers: list[int | None] = [None] * len(looks)
     fresh = people.fresh
-    for place in sorted(range(len(looks)), key=lambda at: _rank(people, looks[at])):
+    order = range(len(looks))
+    for place in sorted(order, key=lambda at: _rank(people, looks[at])) if order[1:] else order:
         number, landmarks = looks[place]
         if any(is_same(landmarks, known) for known in seen.values()):
             continue

@@ -222,7 +222,7 @@ def _tidy(mask: Bytes) -> None:
         hole = tree[0, number, 3] >= 0
         limit = (HOLE_SHARE if hole else PART_SHARE) * mask.size
         if len(contour) < 4 * limit and cv2.contourArea(contour) < limit:
-            cv2.drawContours(mask, contours, number, int(hole), cv2.FILLED)
+            cv2.drawContours(mask, [contour], 0, int(hole), cv2.FILLED)
 
 
 def seen_of(mask: Bytes, blobs: int, least_share: float) -> Seen:
