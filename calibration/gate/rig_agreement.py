@@ -8,10 +8,11 @@ from numpy.typing import NDArray
 
 from calibration.tracks.joint_tracks import is_upright
 from calibration.tracks.person_prior import ANKLE_SHARE
-from common.body.body import JOINT_NAMES, OTHER_SIDE, Vector
+from common.body.body import JOINT_NAMES, OTHER_SIDE, Floats, Vector
 from common.body.observation import Landmarks, Observation
 from common.bus.instant import TwoSeen
 from common.bus.messages import Agreement
+from common.compiled import compiled
 from common.rig.camera import Camera, Rig, arrays_of, rays
 
 SAMPLES, APART_S = 40, 0.15
@@ -172,16 +173,25 @@ def meetings(
     cameras: tuple[Camera, ...], one_px: NDArray[np.float64], other_px: NDArray[np.float64]
 ) -> tuple[Vector, NDArray[np.float64]]:
     """Gaps (n,) between the sight lines of points (n, 2), and the points nearest to both."""
-    one, other = rays(cameras[0], one_px), rays(cameras[1], other_px)
-    start = arrays_of(cameras[0]).centre
-    base = arrays_of(cameras[1]).centre - start
-    normal = np.cross(one, other)
-    sine_2 = np.maximum((normal**2).sum(axis=1), NARROW)
-    gaps_m: Vector = normal @ base / np.sqrt(sine_2)
-    cosine = (one * other).sum(axis=1)
-    far = (one @ base - cosine * (other @ base)) / sine_2
-    half = 0.5 * gaps_m[:, None] * normal / np.sqrt(sine_2)[:, None]
-    return gaps_m, start + far[:, None] * one + half
+    first, second = (arrays_of(each) for each in cameras[:2])
+    found: tuple[Vector, NDArray[np.float64]] = _met(
+        first.centre, rays(cameras[0], one_px), second.centre, rays(cameras[1], other_px)
+    )
+    return found
+
+
+@compiled
+def _met(start: Vector, one: Floats, end: Vector, other: Floats) -> tuple[Vector, Floats]:
+    """`meetings` of unit directions (n, 3) from two centres (3,)."""
+    gaps_m, places_m, base = np.empty(len(one)), np.empty((len(one), 3)), end - start
+    for n in range(len(one)):
+        normal = np.cross(one[n], other[n])
+        sine_2 = max((normal**2).sum(), NARROW)
+        gaps_m[n] = (normal * base).sum() / math.sqrt(sine_2)
+        cosine = (one[n] * other[n]).sum()
+        far = ((one[n] * base).sum() - cosine * (other[n] * base).sum()) / sine_2
+        places_m[n] = start + far * one[n] + 0.5 * gaps_m[n] / math.sqrt(sine_2) * normal
+    return gaps_m, places_m
 
 
 def _points(seen: Landmarks) -> NDArray[np.float64]:

@@ -181,10 +181,21 @@ def ray(camera: Camera, pixel: tuple[float, float]) -> Vector:
 
 def rays(camera: Camera, pixels: NDArray[np.float64]) -> NDArray[np.float64]:
     """Directions in the world, (n, 3) of unit length, of the rays of pixels (n, 2), undistorted."""
-    known, plane = arrays_of(camera), np.ones((len(pixels), 3))
-    plane[:, :2] = (pixels - known.middle_px) / known.focal_px
-    found: NDArray[np.float64] = plane @ known.R
-    return found / np.linalg.norm(found, axis=1, keepdims=True)
+    known = arrays_of(camera)
+    pixels = np.ascontiguousarray(pixels, np.float64)
+    found: NDArray[np.float64] = _rays(known.R, pixels, known.focal_px, known.middle_px)
+    return found
+
+
+@compiled
+def _rays(R: Floats, pixels: Floats, focal_px: Vector, middle_px: Vector) -> Floats:
+    """(n, 3) of unit length."""
+    found = np.empty((len(pixels), 3))
+    for n in range(len(pixels)):
+        x = (pixels[n, 0] - middle_px[0]) / focal_px[0]
+        y = (pixels[n, 1] - middle_px[1]) / focal_px[1]
+        found[n] = _turned_back(R, x, y)
+    return found
 
 
 @compiled
