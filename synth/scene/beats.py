@@ -30,8 +30,10 @@ Random = np.random.Generator
 Beat = Callable[[Plot, Ground, Random], Plot]
 """Continues a plot by some seconds; raises Clash where its random choices do not work out."""
 
-AT_ONCE: Final = 3
-"""Largest number of people who walk to other places at the same time."""
+CROWD: Final = 4
+"""Number of people from which on there is no room for much at the same time."""
+CALM: Final = tuple(name for name in IDLE if name != "anything")
+"""Gestures near the body."""
 BENT_M: Final = 0.35
 """Standard deviation of the middle of a way from the straight line."""
 WAITS_S: Final = 0.4
@@ -58,7 +60,8 @@ STAYING: Final = tuple(name for name in MOVES if name not in RETURNS)
 
 def mingle(plot: Plot, ground: Ground, rng: Random) -> Plot:
     """People walk to other places, half of the time to each other's."""
-    there = [int(who) for who in rng.permutation(plot.there)[:AT_ONCE]]
+    crowd = len(plot.there) >= CROWD
+    there = [int(who) for who in rng.permutation(plot.there)[: CROWD // 2 if crowd else None]]
     if len(there) > 1 and rng.random() < 0.5:
         ends = [plot.scripts[who].end_m for who in there]
         targets = dict(zip(there, [*ends[1:], ends[0]], strict=True))
@@ -92,8 +95,9 @@ def perform(plot: Plot, _ground: Ground, rng: Random) -> Plot:
     ready = later(ready, TURNED_S)
     after = ready
     postures = rng.permutation(STAYING).tolist()
+    share = POSTURE_SHARE if len(plot.there) < CROWD else 1.0 / len(plot.there)
     for who in plot.there:
-        if rng.random() < POSTURE_SHARE:
+        if rng.random() < share:
             name = postures.pop()
             after = gestured(after, who, name, MOVES[name], MOTION_S)
         else:
@@ -235,5 +239,5 @@ def _while(plot: Plot, after: Plot, busy: tuple[int, ...] | list[int], rng: Rand
 
 def _idle(plot: Plot, who: int, lasts_s: float, rng: Random) -> Plot:
     """The plot with a gesture of a person who stands."""
-    name = str(rng.choice(list(IDLE)))
+    name = str(rng.choice(CALM if len(plot.there) >= CROWD else list(IDLE)))
     return gestured(plot, who, name, IDLE[name](rng), lasts_s)

@@ -13,8 +13,8 @@ ASIDE_M: Final = 0.4
 """Half the width of a person who stands or walks."""
 SPAN_M: Final = 0.95
 """Half the width of a person in the T-pose."""
-NEAREST_M: Final = 3.25
-"""Smallest distance of a person from a camera: nearer, head and feet leave a picture of 4:3."""
+NEAREST_M: Final = 3.4
+"""Smallest distance of a person from a camera: nearer, the feet leave a picture of 4:3."""
 FURNITURE_M: Final = 0.8
 """Distance from a wall: furniture and half a person."""
 FARTHEST_M: Final = 1.5
