@@ -13,6 +13,7 @@ from synth.person.skeleton import JOINTS
 from synth.picture import render
 from synth.picture.random_rig import rig_around
 from synth.scene import people_scene as made
+from synth.scene.floor import OUT_M, ground, way_out
 from synth.scene.people_scene import (
     CLEAR_M,
     LEADS,
@@ -144,14 +145,17 @@ def test_people_walk_forward_and_their_feet_hardly_slide(scenes: list[Scene]) ->
 
 @pytest.mark.parametrize(("people", "cameras"), [(2, 2), (3, 4), (1, 1), (2, 8)])
 def test_who_stays_in_the_room_is_in_every_picture(people: int, cameras: int) -> None:
-    """The trunk, in each camera, in all frames in which nobody goes out or comes in."""
-    rig = rig_around((64, 48), cameras, 3)
-    for part in scene_of(people, cameras, 1).parts:
-        if (part.motion.phase[9:] == EMPTY).any():
+    """The pelvis, in each camera, in all frames; who comes in later or goes out is left out."""
+    rig, stayed = rig_around((64, 48), cameras, 3), 0
+    for part in scene_of(people, cameras, 2).parts:
+        root_m = part.motion.root_m[9:]
+        if (part.motion.phase[9:] == EMPTY).any() or np.abs(root_m[-1, [0, 2]]).max() > 1.5:
             continue
+        stayed += 1
         for camera in rig.cameras:
-            pixels = project(camera, part.motion.joints_m[9:, TRUNK].reshape(-1, 3))
+            pixels = project(camera, root_m)
             assert ((pixels > 0) & (pixels < (64, 48))).all()
+    assert stayed
 
 
 @given(st.integers(0, 50))
@@ -178,3 +182,16 @@ def test_contacts_are_of_their_pair_alone(scenes: list[Scene]) -> None:
     plot = Plot((), 0.0, frozenset(), (contact,))
     assert touching(plot, contact.people[::-1], times).tolist() == [False, True, True, False]
     assert not touching(plot, (contact.people[0], 7), times).any()
+
+
+def test_the_way_out_leads_through_the_nearest_wall_but_not_into_a_camera() -> None:
+    rig = rig_around((64, 48), 4, 3)
+    place = ground(rig, render.room_of(1, rig))
+    start = np.array([0.2, 0.1])
+    low, high = place.room.low[[0, 2]], place.room.high[[0, 2]]
+    walls = np.abs([*(low - start), *(high - start)])
+    out = way_out(place, start)
+    assert np.linalg.norm(out - start) == pytest.approx(walls.min() + OUT_M)
+    in_way = place._replace(eyes_m=(start + out)[None] / 2)
+    other = way_out(in_way, start)
+    assert np.linalg.norm(other - start) == pytest.approx(np.sort(walls)[1] + OUT_M)

@@ -85,6 +85,15 @@ def test_a_wall_hides_who_is_behind_it_and_shadows_add_up() -> None:
         assert ((both - own).max(axis=2)[bare] <= 3).all(), "and nothing is brighter"
 
 
+def test_who_is_behind_a_camera_is_not_in_its_picture() -> None:
+    """Alone, or beside somebody who is before it."""
+    rig, behind = default_rig(96, 72), placed(1, (0.0, 5.5))
+    assert not any(mask.any() for mask in next(render_scene([behind], rig, 4, 9)).masks)
+    both = next(render_scene([behind, placed(2, (0.0, 0.0))], rig, 4, 9)).masks[0]
+    assert both[1].any()
+    assert not both[0].any()
+
+
 def test_one_person_in_a_scene_is_drawn_as_alone() -> None:
     rig, part = default_rig(96, 72), placed(3, (0.1, 0.2))
     scene, one = next(render_scene([part], rig, 4, 9)), next(render(*part, rig, 4, 9))

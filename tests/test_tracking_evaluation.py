@@ -10,13 +10,15 @@ from pathlib import Path
 from typing import Any, cast
 
 import cv2
+import msgspec
 import numpy as np
 import pytest
 from rich.console import Console
 
 import tritrack.__main__ as door
+from common.body.body import JOINT_NAMES
 from common.config.settings import Settings
-from lab.accuracy import tracking_evaluation
+from lab.accuracy import accuracy_report, tracking_evaluation
 from lab.accuracy.accuracy import compare, summary
 from lab.accuracy.silhouette_iou import Overlap
 from lab.accuracy.tracking_evaluation import EvaluationError, evaluate_tracking
@@ -25,6 +27,7 @@ from runtime.offline.batch import Asked
 from runtime.offline.lockstep import Tracked
 from runtime.store.clip_paths import ClipsFailed
 from runtime.store.runs import write_run
+from synth.scene.scene_clips import SceneSet, write_scenes
 
 QUIET = Console(quiet=True)
 TERMINAL = Console(file=StringIO(), force_terminal=True)
@@ -299,3 +302,41 @@ def test_runs_that_stand_are_read_and_clips_that_have_none_are_tracked(
     noted.clear()
     tracking_evaluation._runs_of([given], tmp_path / "out", None, None, None, console)
     assert not noted
+
+
+def test_several_people_are_scored_one_by_one_and_by_who_is_who(tmp_path: Path) -> None:
+    """A made-up scene, and a run that knows the truth but exchanges two numbers half-way."""
+    (scene,) = write_scenes(tmp_path / "clips", SceneSet(2, 3.0, 1, 11), (64, 48))
+    with np.load(scene / "truth.npz") as truth:
+        held = {name: truth[name] for name in truth.files}
+    picked = [held["joint_names"].tolist().index(name) for name in JOINT_NAMES]
+    there = held["present"]
+    later = (held["frame"] > 26) & there
+    number = np.where(later, 1 - held["person"], held["person"])[there]
+    run = tmp_path / "runs" / scene.name
+    run.mkdir(parents=True)
+    order = np.lexsort([number, held["frame"][there]])
+    np.savez(
+        run / "poses.npz",
+        frame=held["frame"][there][order],
+        person=number[order],
+        joints_m=held["joints3d"][there][:, picked][order],
+        joint_names=np.array(JOINT_NAMES),
+        confidence=np.ones((int(there.sum()), len(JOINT_NAMES))),
+    )
+    settings = msgspec.to_builtins(Settings(clip=str(scene)))
+    (run / "summary.json").write_text(json.dumps({"settings": settings, "bdp_m": None}))
+    told = evaluate_tracking([scene], tmp_path / "report", tmp_path / "runs", None, None, QUIET)
+    of_all = told["identities"]["all"]
+    assert (of_all["switches"], of_all["misses"], of_all["false"]) == (2, 0, 0)
+    own = max(later.sum(), (there & ~later).sum())
+    assert of_all["idf1"] == pytest.approx(own / there.sum())
+    assert of_all["matched_mm"] < 0.01
+    assert list(told["per_clip"]) == [f"{scene.name}, person {who}" for who in (0, 1)]
+    assert all(0.0 < one["lost"] < 0.6 for one in told["per_clip"].values())
+    page = Page(tmp_path / "report" / "report.html")
+    assert f"{of_all['idf1']:.3f}" in page.texts
+    line = accuracy_report.line(told)
+    assert f"IDF1 {of_all['idf1']:.3f}, AssA {of_all['assa']:.3f}" in line
+    assert line.endswith("2 switches")
+    assert accuracy_report.headline(told)["identities"] == of_all

@@ -74,8 +74,8 @@ def compare(poses: Arrays, truth: Arrays) -> Compared:
     Raises:
         Mismatch: When a joint is missing, or an array has an unexpected shape.
     """
-    _refuse_other_shapes(poses, "frame", "joints_m")
-    _refuse_other_shapes(truth, "present", "joints3d")
+    refuse_other_shapes(poses, "frame", "joints_m")
+    refuse_other_shapes(truth, "present", "joints3d")
     n = len(truth["present"])
     row_of = np.asarray(truth["frames_cam1"] if "frames_cam1" in truth else np.arange(n), int)
     frame = np.asarray(poses["frame"], int)
@@ -105,7 +105,12 @@ def compare(poses: Arrays, truth: Arrays) -> Compared:
     )
 
 
-def _refuse_other_shapes(arrays: Arrays, rows: str, places: str) -> None:
+def refuse_other_shapes(arrays: Arrays, rows: str, places: str) -> None:
+    """Raise where joints do not have one row for each entry of another array.
+
+    Raises:
+        Mismatch: Then.
+    """
     _places(arrays["joint_names"])
     due = (np.size(arrays[rows]), np.size(arrays["joint_names"]), 3)
     if np.ndim(arrays[rows]) != 1 or np.shape(arrays[places]) != due:

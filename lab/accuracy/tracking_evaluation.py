@@ -18,7 +18,9 @@ from common.method import Mode
 from common.npz_file import Arrays, DamagedFile, Facts, read_arrays
 from lab.accuracy import accuracy_plots, accuracy_report, worst_frames
 from lab.accuracy.accuracy import Compared, Mismatch, compare, per_joint, summary
+from lab.accuracy.identity import Counts, counts, figures, gaps_of
 from lab.accuracy.limb_lengths import length_errors
+from lab.accuracy.people_apart import apart
 from lab.accuracy.reliability import trust
 from lab.accuracy.silhouette_iou import Overlap, overlaps
 from runtime.offline.batch import Asked, track_all
@@ -78,15 +80,20 @@ def evaluate_tracking(
     """
     folders = _runs_of(paths, out, runs, mode, size, console)
     with bar(console) as progress:
-        cases = {
-            name: _case(folder, clip, mode, size)
-            for name, (folder, clip) in progress.track(folders.items(), description="reading")
-        }
+        cases: dict[str, Case] = {}
+        identities: dict[str, Counts] = {}
+        for name, (folder, clip) in progress.track(folders.items(), description="reading"):
+            found, kept_apart = _cases(folder, clip, mode, size)
+            cases |= {f"{name}{whose}": case for whose, case in found.items()}
+            if len(found) > 1:
+                identities[name] = kept_apart
     if not any(len(case.compared.rows) for case in cases.values()):
         raise EvaluationError("no clip has both a truth.npz and a pose: there is nothing to score")
     try:
         out.mkdir(parents=True, exist_ok=True)
         report = _report(cases, out, console)
+        if identities:
+            report["identities"] = _identities(identities)
         (out / "report.json").write_text(json_text(report) + "\n")
         (out / "report.html").write_text(accuracy_report.page_of(report))
     except OSError as error:
@@ -132,8 +139,11 @@ def _truth_of(settings: Settings) -> Path:
     return Path(settings.clip) / "truth.npz"
 
 
-def _case(run: Path, clip: Path | None, mode: Mode | None, size: str | None) -> Case:
-    """A run with its ground truth."""
+def _cases(
+    run: Path, clip: Path | None, mode: Mode | None, size: str | None
+) -> tuple[dict[str, Case], Counts]:
+    """A run with its ground truth: a case of each person by what their names add to the clip's,
+    and how well they are kept apart."""
     try:
         facts = json.loads((run / "summary.json").read_text())
         settings = settings_of(facts["settings"])
@@ -152,11 +162,24 @@ def _case(run: Path, clip: Path | None, mode: Mode | None, size: str | None) -> 
         raise EvaluationError(f"{run} needs {path}, which is not there: name its clip beside it")
     poses, truth = _arrays(run / "poses.npz", IN_POSES), _arrays(path, IN_TRUTH)
     try:
-        compared = compare(poses, truth)
+        gaps = gaps_of(poses, truth)
+        each = [(compare(*one), one.truth) for one in apart(poses, truth, gaps)]
     except Mismatch as error:
         raise EvaluationError(f"{run} and {path} do not fit together: {error}") from error
-    told = facts.get("performer", ""), facts.get("posture_meant", "")
-    return Case(settings, *told, bdp, compared, truth)
+    if len(each) == 1:
+        told = facts.get("performer", ""), facts.get("posture_meant", "")
+        return {"": Case(settings, *told, bdp, *each[0])}, counts(gaps)
+    names = [str(name) for name in truth["performer"]]
+    return {
+        f", person {who}": Case(settings, names[who], "scene", None, *one)
+        for who, one in enumerate(each)
+    }, counts(gaps)
+
+
+def _identities(clips: Mapping[str, Counts]) -> Facts:
+    """How well people are kept apart, of all clips and of each."""
+    per_clip = {name: figures([one]) for name, one in clips.items()}
+    return {"all": figures([*clips.values()]), "per_clip": per_clip}
 
 
 def _arrays(path: Path, needed: Sequence[str]) -> Arrays:

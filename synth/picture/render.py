@@ -252,9 +252,12 @@ def _covered(whose: NDArray[np.uint8], people: int, scale: int) -> NDArray[np.bo
 
 
 def _box(pixels: Vector, rig: Rig) -> tuple[slice, slice]:
-    """Rows and columns that hold all pixels, inside the picture."""
-    low = np.clip(np.nanmin(pixels, axis=0) - 1, 0, [rig.width, rig.height]).astype(int)
-    high = np.clip(np.nanmax(pixels, axis=0) + 2, 0, [rig.width, rig.height]).astype(int)
+    """Rows and columns that hold all pixels, inside the picture; empty where all are NaN."""
+    ahead = pixels[np.isfinite(pixels).all(axis=1)]
+    if not len(ahead):
+        return slice(0, 0), slice(0, 0)
+    low = np.clip(ahead.min(axis=0) - 1, 0, [rig.width, rig.height]).astype(int)
+    high = np.clip(ahead.max(axis=0) + 2, 0, [rig.width, rig.height]).astype(int)
     return slice(low[1], max(high[1], low[1])), slice(low[0], max(high[0], low[0]))
 
 

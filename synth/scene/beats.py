@@ -149,7 +149,7 @@ def leave(plot: Plot, ground: Ground, rng: Random) -> Plot:
         raise Clash("the room would be empty")
     who = int(rng.choice(plot.there))
     start = plot.scripts[who].end_m
-    walk = walk_through(plot.now_s, np.array([start, way_out(ground.room, start)]), rng)
+    walk = walk_through(plot.now_s, np.array([start, way_out(ground, start)]), rng)
     after = later(walked(plot, who, walk), walk.to_s - plot.now_s)
     after = _while(plot, after, (who,), rng)
     return after._replace(out=plot.out | {who})

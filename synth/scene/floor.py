@@ -21,6 +21,8 @@ FARTHEST_M: Final = 1.5
 """Half the side of the square in which places are sought."""
 OUT_M: Final = 0.9
 """Distance behind a wall at which a walk out ends."""
+CAMERA_M: Final = 1.0
+"""Smallest distance from a camera on a way out."""
 GRID: Final = 41
 """Number of places tried, each way."""
 MIDDLE_M: Final = 1.0
@@ -35,6 +37,8 @@ class Ground(NamedTuple):
     opening_m: Floor
     """(k, 2) where a person in the T-pose is."""
     room: Room
+    eyes_m: Floor
+    """(cameras, 2) places of the cameras."""
 
 
 def ground(rig: Rig, room: Room) -> Ground:
@@ -54,7 +58,8 @@ def ground(rig: Rig, room: Room) -> Ground:
     spread &= (tried[:, 0] >= low[0] + 0.2) & (tried[:, 0] <= high[0] - 0.2)
     if not (spread & standing).any():
         raise ValueError("the cameras have no place in common where a person is seen whole")
-    return Ground(tried[standing], tried[spread & standing], room)
+    eyes_m = np.stack([centre(camera)[[0, 2]] for camera in rig.cameras])
+    return Ground(tried[standing], tried[spread & standing], room, eyes_m)
 
 
 def inside(room: Room, places_m: Floor, behind_m: float = 0.0) -> NDArray[np.bool_]:
@@ -63,14 +68,24 @@ def inside(room: Room, places_m: Floor, behind_m: float = 0.0) -> NDArray[np.boo
     return np.asarray(((places_m >= low) & (places_m <= high)).all(axis=1))
 
 
-def way_out(room: Room, from_m: Floor) -> Floor:
-    """(2,) the place behind the nearest wall."""
-    low, high = room.low[[0, 2]] - OUT_M, room.high[[0, 2]] + OUT_M
+def way_out(place: Ground, from_m: Floor) -> Floor:
+    """(2,) the place behind the nearest wall to which a straight way leads past all cameras."""
+    low, high = place.room.low[[0, 2]] - OUT_M, place.room.high[[0, 2]] + OUT_M
     sides = ((0, low[0]), (0, high[0]), (1, low[1]), (1, high[1]))
-    axis, wall = min(sides, key=lambda side: abs(side[1] - from_m[side[0]]))
-    out = np.array(from_m, np.float64)
-    out[axis] = wall
-    return out
+    nearest = sorted(sides, key=lambda side: abs(side[1] - from_m[side[0]]))
+    ways = []
+    for axis, wall in nearest:
+        out = np.array(from_m, np.float64)
+        out[axis] = wall
+        ways.append(out)
+    free = (out for out in ways if _gap_m(from_m, out, place.eyes_m) >= CAMERA_M)
+    return next(free, ways[0])
+
+
+def _gap_m(from_m: Floor, to_m: Floor, points_m: Floor) -> float:
+    """Smallest distance of a straight way from some points (n, 2)."""
+    along = from_m + np.linspace(0.0, 1.0, 50)[:, None] * (to_m - from_m)
+    return float(np.linalg.norm(along[:, None] - points_m, axis=2).min())
 
 
 def _shows(camera: Camera, places_m: Floor, rig: Rig, half_m: float) -> NDArray[np.bool_]:

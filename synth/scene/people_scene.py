@@ -124,7 +124,7 @@ def _opened(people: int, place: Ground, rng: np.random.Generator) -> Plot:
     for row_m in rng.permutation(at_m):
         nearest = depths_m[np.abs(depths_m - row_m).argmin()]
         starts.append(rng.choice(place.opening_m[place.opening_m[:, 1] == nearest]))
-    door = way_out(place.room, place.places_m.mean(axis=0))
+    door = way_out(place, place.places_m.mean(axis=0))
     starts += [door] * (people - early)
     out = frozenset(range(early, people))
     return Plot(tuple(Script(start) for start in starts), OPENED_S, out)
