@@ -13,8 +13,9 @@ from common.rig.rig_file import load_rig
 from synth.motion.motions import Motion, performance
 from synth.person.people import person
 from synth.person.skeleton import JOINTS
+from synth.picture.actors import Part
 from synth.picture.exposure import default_rig
-from synth.picture.render import Part, render, render_scene
+from synth.picture.render import render, render_scene
 from synth.scene.scene_clips import SceneSet, in_pictures, together, write_scenes
 from synth.write import Filming, SynthError, truth_of, write_clip
 

@@ -29,8 +29,8 @@ from synth.person.people import Look, person
 from synth.person.rings import MATERIAL
 from synth.person.skeleton import ANGLES, BONE_INDEX, HEAD_FORWARD, JOINTS, bone_frames
 from synth.person.wardrobe import dressed
+from synth.picture.actors import palette
 from synth.picture.picture_examples import PICTURES
-from synth.picture.render import palette
 from synth.picture.silhouette_examples import PEOPLE
 
 Use = Callable[[Anatomy], None]

@@ -12,6 +12,7 @@ from synth.anny_people.retarget import hung, retargeted
 from synth.person.people import Look, person
 from synth.person.rings import MATERIAL
 from synth.person.wardrobe import dressed
+from synth.picture.actors import palette
 from synth.picture.example_poses import poses_deg
 from synth.picture.picture_examples import (
     PICTURES,
@@ -20,7 +21,6 @@ from synth.picture.picture_examples import (
     pictured,
     shirt_pattern,
 )
-from synth.picture.render import palette
 from synth.picture.silhouette_examples import PEOPLE
 
 EYES: Final = (0.25, 0.7)

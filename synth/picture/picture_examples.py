@@ -13,10 +13,10 @@ from synth.person.people import PATTERNS, Look, Person, person
 from synth.person.rings import MATERIAL
 from synth.person.skeleton import BONE_INDEX, JOINTS, turned
 from synth.person.wardrobe import dressed
+from synth.picture.actors import palette
 from synth.picture.example_poses import poses_deg
 from synth.picture.mask_flaws import flaw, spoilt
 from synth.picture.raster import draw, gather, shade, skin
-from synth.picture.render import palette
 from synth.picture.silhouette_examples import PEOPLE, differing
 
 SIDE_PX: Final = 128

@@ -12,17 +12,14 @@ from common.body.body import Vector
 from common.rig.camera import Rig, project
 from common.video.pictures import Image
 from synth.motion.motions import Motion
-from synth.person.mesh import Mesh, body_mesh
-from synth.person.people import PATTERNS, Look, Person
-from synth.person.rings import MATERIAL, MATERIALS
-from synth.picture.exposure import blurred, exposures
-from synth.picture.raster import cover, draw, expose, gather, shade, skin
+from synth.person.people import Person
+from synth.picture.actors import Actor, Part, actor_of, surfaces
+from synth.picture.exposure import exposures
+from synth.picture.raster import cover, draw, expose, gather, shade
 from synth.picture.synth_room import LIGHT_MAP_PX, Lamp, Room, furnished, lamp_pixels, lit_from
 
 FINE_PX: Final = 480
 """Number of samples across a picture: smaller pictures average more samples per pixel."""
-SHUTTER: Final = 0.4
-"""Open time of the shutter, over the frame period."""
 NOISE: Final = 1.7
 """Standard deviation of the sensor's noise in a dark pixel, grey levels."""
 KEY_DARK, FOOT_DARK = 0.2, 0.3
@@ -44,30 +41,10 @@ class Shot(NamedTuple):
     one person; (people, h, w) of several, what others hide left out."""
 
 
-class Part(NamedTuple):
-    """A person and their motion in a scene."""
-
-    someone: Person
-    motion: Motion
-
-
-class _Actor(NamedTuple):
-    """A person's surface in all frames."""
-
-    mesh: Mesh
-    palette: NDArray[np.float64]
-    pattern: tuple[float, float, float]
-    places: NDArray[np.float64]
-    """(n, v, 3) of the vertices, world metres."""
-    present: NDArray[np.bool_]
-    smeared: NDArray[np.bool_]
-    """(n,) whether a frame has motion blur."""
-
-
 class _Scene(NamedTuple):
     """The constant part of a clip."""
 
-    cast: tuple[_Actor, ...]
+    cast: tuple[Actor, ...]
     room: Room
     rig: Rig
     scale: int
@@ -108,14 +85,7 @@ def render_scene(parts: Sequence[Part], rig: Rig, room_seed: int, seed: int) -> 
 
 def _scene_of(parts: Sequence[Part], rig: Rig, room: Room, *, solid: bool) -> _Scene:
     scale = max(2, round(FINE_PX / rig.width))
-    return _Scene(tuple(map(_actor, parts)), room, rig, scale, solid)
-
-
-def _actor(part: Part) -> _Actor:
-    look, mesh = part.someone.look, body_mesh(part.someone)
-    pattern = (float(PATTERNS.index(look.pattern)), look.pitch_m, float(MATERIAL["shirt"]))
-    places, motion = _placed(mesh, part.motion), part.motion
-    return _Actor(mesh, palette(look), pattern, places, motion.present, blurred(motion))
+    return _Scene(tuple(map(actor_of, parts)), room, rig, scale, solid)
 
 
 def _shots(scene: _Scene, fps: float, seed: int) -> Iterator[Shot]:
@@ -140,45 +110,12 @@ def room_of(seed: int, rig: Rig, moving: bool = False) -> Room:
     return furnished(seed, rig, moving)
 
 
-def palette(look: Look) -> NDArray[np.float64]:
-    """Colours of MATERIALS, then the shirt's second colour."""
-    colours = {
-        "skin": look.skin,
-        "hair": look.hair_colour,
-        "shirt": look.shirt,
-        "trousers": look.trousers,
-        "shoes": look.shoes,
-        "dark": tuple(0.72 * value for value in look.skin),
-        "lips": tuple(0.8 * value for value in look.skin),
-    }
-    rows = [colours[name] for name in MATERIALS] + [look.shirt_second]
-    return np.array(rows, dtype=np.float64)
-
-
-def _placed(mesh: Mesh, motion: Motion) -> NDArray[np.float64]:
-    """Vertices of every frame, (n, v, 3), world metres."""
-    places = np.empty((len(motion.phase), *mesh.vertices_m.shape))
-    for frames, out in zip(motion.bones, places, strict=True):
-        skin(mesh.vertices_m, mesh.origins_m, mesh.bones, mesh.shares, frames, out)
-    return places
-
-
-def _moments(actor: _Actor, i: int, smeared: bool) -> list[NDArray[np.float64]]:
-    """The surface at the frame's time, then before and after it while the shutter is open."""
-    places = actor.places
-    if not smeared:
-        return [places[i]]
-    before, after = places[max(i - 1, 0)], places[min(i + 1, len(places) - 1)]
-    frame = (after - before) / 2
-    return [places[i] + SHUTTER * share * frame for share in (0.0, -0.4, -0.2, 0.2, 0.4)]
-
-
 class _Drawing(NamedTuple):
     """A person who is drawn in one frame."""
 
     number: int
     """Place in the cast, from 1."""
-    actor: _Actor
+    actor: Actor
     moments: list[NDArray[np.float64]]
     shaded: Vector
     """(v,) brightness of the vertices."""
@@ -206,7 +143,7 @@ def _drawings(scene: _Scene, i: int) -> list[_Drawing]:
     smeared, light = any(actor.smeared[i] for _, actor in there), lit_from(scene.room.lamps[0])
     found = []
     for number, actor in there:
-        moments, shaded = _moments(actor, i, smeared), np.empty(len(actor.mesh.shares))
+        moments, shaded = surfaces(actor, i, smeared), np.empty(len(actor.mesh.shares))
         shade(moments[0], actor.mesh.faces, light, np.empty_like(moments[0]), shaded)
         found.append(_Drawing(number, actor, moments, shaded))
     return found
@@ -280,7 +217,7 @@ def _light(scene: _Scene, i: int) -> list[NDArray[np.float32]]:
     return found
 
 
-def _lamp_mask(there: list[_Actor], i: int, lamp: Lamp, blur_px: int) -> NDArray[np.float32]:
+def _lamp_mask(there: list[Actor], i: int, lamp: Lamp, blur_px: int) -> NDArray[np.float32]:
     """The people in a lamp's picture, blurred by the lamp's size."""
     mask = np.zeros((LIGHT_MAP_PX, LIGHT_MAP_PX), np.uint8)
     for actor in there:

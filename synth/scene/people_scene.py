@@ -10,7 +10,8 @@ from common.rig.camera import Rig
 from synth.motion.motions import EMPTY, MOTION, Motion
 from synth.person.people import Person, person
 from synth.person.skeleton import JOINTS
-from synth.picture.render import Part, room_of
+from synth.picture.actors import Part
+from synth.picture.render import room_of
 from synth.scene.beats import BEATS
 from synth.scene.floor import Ground, ground, inside, way_out
 from synth.scene.plot import Clash, Contact, Plot, touching
