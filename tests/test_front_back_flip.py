@@ -16,6 +16,7 @@ from integrator.landmarks.front_back_flip import (
     UNTOLD,
     WIDE_DEG,
     confused,
+    contradicted,
     step,
     yaw_deg,
 )
@@ -115,3 +116,30 @@ def test_a_proposal_is_turned_once_that_is_sure_and_until_it_is_as_surely_not_so
         assert turned == was
     assert step((0.999, False), BODY_M, nothing)[1]
     assert not step((0.1, True), BODY_M, nothing)[1]
+
+
+def quartered(first: tuple[float, float], second: tuple[float, float]) -> Rays:
+    """Two views at a right angle: the second has the first one's x as its depth."""
+    quarter = np.array([[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]])
+    return told(first, second)._replace(rotations=np.stack([np.eye(3), quarter]))
+
+
+def test_a_pose_whose_facing_both_views_deny_loses_its_odds() -> None:
+    """The mirror image of -37 degrees across the middle of both views is -127: a quarter turn."""
+    rays = quartered((-20.0, 0.92), (42.0, 0.95))
+    true, mirrored = facing(-37.0), facing(-127.0)
+    assert yaw_deg(rays.rotations[1], true) == pytest.approx(53.0)
+    assert contradicted(true, rays) == 1.0
+    assert contradicted(mirrored, rays) > 50.0
+    unsure = quartered((-20.0, 0.0), (42.0, 0.0))
+    assert contradicted(mirrored, unsure) == 1.0
+
+
+def test_a_facing_that_is_as_likely_as_any_speaks_neither_for_nor_against() -> None:
+    """By Bayes: the density of a normal facing against that of any, 1 / 360 a degree."""
+    for off_deg in (0.0, 40.0, 70.0, 100.0):
+        said, pose = told((0.0, 0.99)), facing(off_deg)
+        normal = math.exp(-0.5 * (off_deg / WIDE_DEG) ** 2)
+        density = (normal + UNIFORM_FLOOR) / (math.sqrt(2.0 * math.pi) * WIDE_DEG)
+        due = max(1.0, 1.0 / 360.0 / density)
+        assert contradicted(pose, said) == pytest.approx(due, rel=0.02)

@@ -19,6 +19,8 @@ that front and back are right. In a profile, front and back look alike. Of poses
 and synthetic people (docs/measurements.md)."""
 UNTOLD: Final = 0.15
 """Probability that a view without a facing took front for back."""
+ANY: Final = math.sqrt(2.0 * math.pi) * WIDE_DEG / 360.0
+"""Density of any facing of a person of whom nothing is known, as a share of the peak."""
 UNIFORM_FLOOR: Final = 0.005
 """Density of any other facing, as a share of the peak."""
 RARELY: Final = 0.01
@@ -54,6 +56,25 @@ def step(
             odds += TRUST * math.log(told)
     now = 1.0 / (1.0 + math.exp(-odds))
     return now, now > (1.0 - FLIP_THRESHOLD if turned else FLIP_THRESHOLD)
+
+
+def contradicted(joints_m: NDArray[np.float64], rays: Rays) -> float:
+    """Divisor of the odds that joints are right: above 1 where the views' facings tell another yaw.
+
+    Silhouettes of two views at right angles are about the same for a person and for their mirror
+    image across the plane between both views: that is a quarter turn at most, and no flip mends it.
+
+    Args:
+        joints_m: (12, 3) world, of JOINTS.
+        rays: The views' rays; their facings count.
+    """
+    against = 0.0
+    for view, sure in enumerate(rays.facing_confidence):
+        if sure > 0.0:
+            facing_deg = yaw_deg(rays.rotations[view], joints_m)
+            likely = _told(rays.facing_deg[view], facing_deg, confused(sure))
+            against += math.log(ANY / likely)
+    return math.exp(max(0.0, against))
 
 
 def yaw_deg(rotation: NDArray[np.float64], joints_m: NDArray[np.float64]) -> float:

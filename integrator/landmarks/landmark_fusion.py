@@ -88,6 +88,7 @@ def step(
     )
     wider_m = proposal_residual.wider_m(misfit, rays, stature_m)
     doubt = proposal_residual.doubt(misfit, turned[1])
+    doubt *= front_back_flip.contradicted(proposed_m, rays)
     displaced, proposed_m = proposal_offset.step(
         None if before is None else before.displaced, proposed_m, shown_right(rays), rays, stature_m
     )
