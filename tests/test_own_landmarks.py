@@ -86,6 +86,28 @@ def off(found: Landmarks | None) -> float:
     )
 
 
+def test_a_silhouette_that_is_a_guess_is_shown_to_the_network_only_where_no_person_is_known(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    shown: list[Mask | None] = []
+
+    def planes(picture: Image, mask: Mask | None, window: Window) -> np.ndarray:
+        shown.append(mask)
+        return planes_of(picture, mask, window)
+
+    monkeypatch.setattr(source, "planes_of", planes)
+    picture, mask = acted()[0].frames[0], acted()[0].masks[0]
+    door = np.zeros_like(mask)
+    door[40:200, 20:80] = True
+    known = landmarks_by(picture, seen(mask), None)
+    for is_guess, before, count in ((False, known, 2), (True, known, 0), (True, None, 2)):
+        shown.clear()
+        found = landmarks_by(picture, seen(mask | door)._replace(is_guess=is_guess), before)
+        assert len([each for each in shown if each is not None]) in ((0,) if not count else (1, 2))
+        assert found is not None
+    assert off(landmarks_by(picture, seen(door)._replace(is_guess=True), known)) < 0.03
+
+
 @pytest.mark.slow
 def test_the_joints_of_somebody_with_an_outline_are_found() -> None:
     shot = acted()[0]

@@ -413,11 +413,11 @@ def test_a_mask_as_tall_as_a_person_tells_its_box_area_and_border(rows: int, the
     assert found.mask.dtype == np.bool_
     if there:
         box = Box(left=60, right=69, top=20, bottom=34)
-        assert found[1:] == (box, 150, 3, False)
+        assert found[1:] == (box, 150, 3, False, False)
         mask[20:22, 190:] = 1
         assert seen_of(mask, 1, 0.15).cut
     else:
-        assert found[1:] == (None, 0, 0, False)
+        assert found[1:] == (None, 0, 0, False, False)
         assert not found.mask.any()
 
 
@@ -508,3 +508,17 @@ def test_a_background_that_is_known_in_part_shows_silhouettes() -> None:
     known.uncertain[:, :100] = True
     _, seen = step(init(known, SETTINGS, DEFAULT), person, None)
     assert seen.area_px == pytest.approx(41 * 141, rel=0.1)
+
+
+@pytest.mark.parametrize(("hidden", "guess"), [(0, False), (8, False), (12, True), (100, True)])
+def test_a_silhouette_is_a_guess_where_a_part_of_the_background_was_never_seen(
+    hidden: int, guess: bool
+) -> None:
+    """Of a thousand pixels so many: 4 at most where people roam, 20 to 200 where they stay."""
+    empty = np.rint(room()).astype(np.uint8)
+    person = cv2.rectangle(empty.copy(), (140, 60), (180, 200), (0, 0, 0), cv2.FILLED)
+    known = learn([empty])
+    known.uncertain.reshape(-1)[: hidden * known.uncertain.size // 1000] = True
+    _, seen = step(init(known, SETTINGS, DEFAULT), person, None)
+    assert seen.is_guess == guess
+    assert seen.box is not None

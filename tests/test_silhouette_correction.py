@@ -101,6 +101,31 @@ def test_a_pixel_that_may_be_the_person_stays_and_is_not_added() -> None:
     assert not (held.seen.mask & ~mask).any()
 
 
+def test_a_guess_and_the_network_are_held_against_each_other_pixel_by_pixel() -> None:
+    """Four bands of the picture, the person .1, .3, .7 and .9 likely; the guess fills every second
+    row. A guess is right in four pixels of five, so its odds are 4 to 1, or 1 to 4."""
+    chances = np.repeat([0.1, 0.3, 0.7, 0.9], 12)
+    logits = np.tile(np.log(chances / (1.0 - chances)).astype(np.float32), (48, 1))
+    given = LandmarkResult(true_person().landmarks, PersonMask(logits, Window(0, -40, 320)))
+    mask = np.zeros((240, 320), np.bool_)
+    mask[20:220:2] = True
+    held = corrected(seen(mask)._replace(is_guess=True), given, 0.15).seen.mask
+    for middle, chance in zip((40, 120, 200, 280), (0.1, 0.3, 0.7, 0.9), strict=True):
+        odds = chance / (1.0 - chance)
+        assert held[100, middle] == (4.0 * odds > 1.0), chance
+        assert held[101, middle] == (0.25 * odds > 1.0), chance
+
+
+def test_a_guess_that_agrees_with_the_network_is_whole_too() -> None:
+    """A halo of a sixth of it goes, which in a silhouette that is no guess may be an arm."""
+    mask = acted()[0].masks[0]
+    wide = cv2.dilate(mask.astype(np.uint8), np.ones((1, 3), np.uint8)) > 0
+    wide |= np.roll(wide, 4, axis=1) & ~np.roll(wide, -9, axis=1)
+    assert iou(corrected(seen(wide), true_person(), 0.15).seen.mask, wide) == 1.0
+    held = corrected(seen(wide)._replace(is_guess=True), true_person(), 0.15)
+    assert iou(held.seen.mask, mask) > iou(wide, mask) + 0.03
+
+
 def test_where_the_network_is_not_sure_the_silhouette_stands() -> None:
     own = seen(without_legs()[0])
     assert corrected(own, true_person(0.29), 0.15).seen is own

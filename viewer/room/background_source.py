@@ -44,9 +44,6 @@ PEOPLE = 20
 FILM_OPTION = "--background"
 """Where the one command that follows videos, `tritrack single`, is given an empty picture."""
 
-LEFT_HIDDEN = 0.01
-"""Who stays on a spot hides 2 to 20 % of the picture all through a clip, who roams up to 0.4 %."""
-
 
 class Opening(NamedTuple):
     """What a viewer knows of a recorded view before its first frame."""
@@ -217,7 +214,7 @@ def background_of_film(
     sample = list(_looked_at(view, settings, decoder)[1])
     if not (odd or view.background):
         busy = learn_uncovered(sample)
-        background = busy if busy.uncertain.mean() < LEFT_HIDDEN else background
+        background = background if busy.is_estimate else busy
     patches = patches_of(background, sample, _stride(view), view.fps)
     return VideoBackground(background, patches, odd and _estimated(view, FILM_OPTION))
 

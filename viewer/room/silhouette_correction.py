@@ -33,6 +33,9 @@ TIGHT: Final = 0.06
 POSSIBLE: Final = 0.2
 """Probability that a pixel shows the person from which on a silhouette's pixel stays; from LIKELY
 on one is added."""
+CERTAIN: Final = 0.8
+"""Probability from which a pixel is added to a silhouette that is a guess: with POSSIBLE, the odds
+of both together, where such a silhouette is right in four pixels of five."""
 LACKING: Final = 0.35
 """Share of the likely person from which a silhouette that lacks it is completed; 0.23 at most in
 720 frames of synthetic people whose silhouettes are whole (docs/measurements.md)."""
@@ -82,8 +85,12 @@ def corrected(
         return Corrected(seen, None, is_changed=False)
     theirs = likeliest(others, result.person, whole.shape) if others else None
     mask = _less(whole, theirs)
-    if result.person is not None:
-        body, things = _by_person(mask, landmarks, result.person, theirs)
+    if result.person is not None and result.surety < SEEN:
+        body, things = mask, None
+    elif result.person is not None:
+        shown = result.person.over(whole.shape, POSSIBLE, CERTAIN if seen.is_guess else LIKELY)
+        possible, likely = (_less(each, theirs) for each in shown)
+        body, things = _by_person(mask, possible, likely, seen.is_guess)
     else:
         body, things = _by_bones(mask, landmarks)
     if body is whole:
@@ -100,18 +107,16 @@ def _less(mask: Bytes, theirs: Bytes | None) -> Bytes:
 
 
 def _by_person(
-    mask: Bytes, landmarks: Landmarks, person: PersonMask, theirs: Bytes | None
+    mask: Bytes, possible: Bytes, likely: Bytes, is_guess: bool
 ) -> tuple[Bytes, Bytes | None]:
     """The body (H, W) where the network sees the person, and what else was in the silhouette; None
-    if that is little. The silhouette itself where both agree, or the network is not sure."""
-    if np.mean(landmarks.confidence) < SEEN:
-        return mask, None
-    possible, likely = (_less(each, theirs) for each in person.over(mask.shape, POSSIBLE, LIKELY))
+    if that is little. The silhouette itself where it is no guess, and both agree."""
     near, known = cv2.bitwise_and(mask, possible), cv2.bitwise_and(mask, likely)
     beside = cv2.countNonZero(mask) - cv2.countNonZero(near)
     lacking = cv2.countNonZero(likely) - cv2.countNonZero(known)
     is_cut = beside >= MUCH * max(1, cv2.countNonZero(mask))
-    if not is_cut and lacking < LACKING * max(1, cv2.countNonZero(likely)):
+    is_whole = lacking < LACKING * max(1, cv2.countNonZero(likely))
+    if is_whole and not is_cut and not is_guess:
         return mask, None
     body = np.asarray(cv2.bitwise_or(near, likely))
     return body, np.asarray(cv2.subtract(mask, body)) if is_cut else None

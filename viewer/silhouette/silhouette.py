@@ -45,6 +45,8 @@ class Seen(NamedTuple):
     """How many regions were large enough to be a person (P4)."""
     cut: bool
     """The silhouette touches the picture's border."""
+    is_guess: bool = False
+    """It is by difference from a background that is an estimate."""
 
 
 class State(NamedTuple):
@@ -61,6 +63,8 @@ class State(NamedTuple):
     frames: int
     is_known: bool = True
     """False: there is no background, and so no silhouette by what differs from it."""
+    is_estimate: bool = False
+    """Of the background; its silhouettes are guesses."""
     doubted: Bytes | None = None
     """(H, W) for how many frames each pixel has been a thing's, by the landmarks; None: none."""
 
@@ -86,8 +90,8 @@ def init(background: Background, settings: SilhouetteSettings, method: Method) -
     weight, colours = np.float32(1) / background.spread**2, fresh()
     even = np.ones(3, np.float32)
     model = BackgroundModel(background.centre, weight, even, body_colours_of(colours))
-    is_known = not background.uncertain.all()
-    return State(settings, method, background, model, colours, 0, is_known)
+    is_known, is_estimate = not background.uncertain.all(), background.is_estimate
+    return State(settings, method, background, model, colours, 0, is_known, is_estimate)
 
 
 def step(state: State, frame: Image, near_px: tuple[float, float] | None) -> tuple[State, Seen]:
@@ -116,7 +120,7 @@ def step(state: State, frame: Image, near_px: tuple[float, float] | None) -> tup
         return state, seen_of(found.mask, found.blobs, least_share)
     first = guess(state, frame, near_px)
     mask = _reclassified(first) if method.alpha_matte else first.mask
-    seen = seen_of(mask, first.blobs, least_share)
+    seen = seen_of(mask, first.blobs, least_share)._replace(is_guess=state.is_estimate)
     if seen.box is not None and method.body_colours:
         state = learn_colours(state, mask, frame, first)
     return _adapted(state, frame, seen.box) if method.slow_light else state, seen
