@@ -16,7 +16,7 @@ from common.video.pictures import Image
 from runtime.unfinished.state_codec import packed, unpacked
 from viewer import landmark_step
 from viewer.captured_frame import CapturedFrame
-from viewer.landmark_step import State, _owners, step
+from viewer.landmark_step import State, _owners, searched, step
 from viewer.landmarks.landmark_window import Window
 from viewer.landmarks.person_mask import LandmarkResult, Shown
 from viewer.people.known_people import People, Track, of_one
@@ -76,7 +76,8 @@ class Scene:
         self, state: State, at_s: float, silhouette: Seen = EMPTY, **more: Any
     ) -> tuple[State, Shown]:
         self.at_s = at_s
-        return step(state, frame(at_s), silhouette, SETTINGS, alone=False, **more)
+        state, shown = step(state, frame(at_s), silhouette, SETTINGS, alone=False, **more)
+        return searched(state), shown
 
 
 def column(landmarks: Landmarks) -> float:
@@ -99,6 +100,26 @@ def test_the_whole_picture_is_searched_twice_a_second_and_oftener_for_a_person_u
         state, shown = scene.step(state, at / 8)
         assert shown.followed.landmarks is scene.people[0]
     assert scene.searches == pytest.approx(np.arange(0.0, 2.01, every))
+
+
+def test_a_known_person_is_reported_before_the_whole_picture_is_searched(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Who comes is seen a frame later then, whether the search was made before that or in it."""
+    scene = Scene(monkeypatch, standing(60.0))
+    state, _ = scene.step(State(), 0.0)
+    scene.people.append(standing(250.0))
+    due, shown = step(state, frame(0.5), EMPTY, SETTINGS, alone=False)
+    assert (columns(shown), scene.searches) == ([pytest.approx(column(scene.people[0]))], [0.0])
+    done = searched(due)
+    assert len(scene.searches) == 2
+    assert done.detected is not None
+    assert len(done.detected) == 2
+    for before in (due, done):
+        after, shown = step(before, frame(0.57), EMPTY, SETTINGS, alone=False)
+        assert columns(shown) == pytest.approx([column(each) for each in scene.people])
+        assert after.detected is None
+    assert searched(done) is done
 
 
 def test_without_a_person_the_whole_picture_is_searched_four_times_a_second(
@@ -219,8 +240,8 @@ def test_a_late_frame_of_a_single_view_is_not_searched_and_the_next_one_is(
     late = frame(3.0, hurried=True)
     state, _ = step(State(), late, EMPTY, SETTINGS, alone=True)
     assert scene.searches == []
-    step(state, frame(3.1), EMPTY, SETTINGS, alone=True)
-    assert len(scene.searches) == 1
+    state, _ = step(state, frame(3.1), EMPTY, SETTINGS, alone=True)
+    assert len(searched(state).detected or ()) == len(scene.searches) == 1
 
 
 def test_a_late_frame_of_two_views_keeps_what_is_known(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,6 +1,7 @@
 """A viewer's landmarks, frame by frame: where the network looks, when, and at whom."""
 
 import math
+from collections.abc import Sequence
 from itertools import permutations
 from operator import itemgetter
 from typing import Final, NamedTuple
@@ -44,6 +45,10 @@ class State(NamedTuple):
     people: People = People()
     searched_s: float = -math.inf
     """Capture time of the last frame whose whole picture was searched for people."""
+    unsearched: Image | None = None
+    """The picture of that frame, while that is still to be done."""
+    detected: tuple[Detection, ...] | None = None
+    """The people in it, for the next frame; None: it was not searched, or they have served."""
 
     @property
     def known(self) -> Landmarks | None:
@@ -80,17 +85,38 @@ def step(
         return State(known_people.of_one(result.landmarks, frame.captured_s)), Shown(result)
     if frame.hurried and not alone and settings.silhouette.background != "none":
         return state, Shown(LandmarkResult(None), state.people.followed)
+    state = searched(state)
     people = known_people.expected_at(state.people, root_px)
     model = LandmarkModel(network_of(settings.landmarks), alone and not frame.hurried)
     looks, new = _looks(frame.picture, seen, people, model), list[LandmarkResult]()
-    searched_s, followed = state.searched_s, looks[people.followed]
-    if not frame.hurried and frame.captured_s >= searched_s + _interval_s(people, followed, seen):
-        searched_s = frame.captured_s
-        looks, new = _searched(frame.picture, looks, people, model)
+    followed = looks[people.followed]
+    state = _due(state, frame, _interval_s(people, followed, seen))
+    if not people.tracks:
+        state = searched(state)
+    if state.detected is not None:
+        looks, new = _looked_again(frame.picture, looks, people, model, state.detected)
     after, shown = _identified(people, frame.captured_s, looks, new)
     if not shown and not is_person(followed.landmarks):
         shown = {after.followed: followed}
-    return State(after, searched_s), _shown(after, shown)
+    return state._replace(people=after, detected=None), _shown(after, shown)
+
+
+def searched(state: State) -> State:
+    """The state with the people in the picture that is still to be searched for them.
+
+    It takes twice a look's time: a person who is known is reported first. Whenever it is called
+    before the next step, that gives the same.
+    """
+    if state.unsearched is None:
+        return state
+    return state._replace(unsearched=None, detected=tuple(people_in(state.unsearched)))
+
+
+def _due(state: State, frame: CapturedFrame, interval_s: float) -> State:
+    """The state with a picture to search, where it is time to."""
+    if frame.hurried or frame.captured_s < state.searched_s + interval_s:
+        return state
+    return state._replace(searched_s=frame.captured_s, unsearched=frame.picture)
 
 
 def _looks(
@@ -110,12 +136,15 @@ def _looks(
     return looks
 
 
-def _searched(
-    picture: Image, looks: dict[int, LandmarkResult], people: People, model: LandmarkModel
+def _looked_again(
+    picture: Image,
+    looks: dict[int, LandmarkResult],
+    people: People,
+    model: LandmarkModel,
+    detected: Sequence[Detection],
 ) -> tuple[dict[int, LandmarkResult], list[LandmarkResult]]:
     """The looks, taken again where a person is detected elsewhere than in the window, and the looks
     at people who are detected and not known."""
-    detected = people_in(picture)
     owners = _owners(detected, people, looks[people.followed])
     looks, new = dict(looks), list[LandmarkResult]()
     for detection, number in zip(detected, owners, strict=True):
@@ -129,7 +158,7 @@ def _searched(
 
 
 def _owners(
-    detected: list[Detection], people: People, followed: LandmarkResult
+    detected: Sequence[Detection], people: People, followed: LandmarkResult
 ) -> list[int | None]:
     """Whom each detection shows, by where the known people were last; None: no one known."""
     places = {track.number: corners_of(track.landmarks) for track in people.tracks}
