@@ -175,6 +175,17 @@ def test_a_proposal_that_both_faces_contradict_is_turned_and_one_that_they_confi
     assert np.linalg.norm(found.joints_m - true_m[AT], axis=1).max() < 0.02
 
 
+@pytest.mark.parametrize("yaw_deg", [130.0, -140.0, -37.0])
+def test_a_proposal_a_quarter_turn_off_costs_no_view_its_sides(yaw_deg: float) -> None:
+    """Two views at a right angle: a turned proposal fits one of them with its sides exchanged."""
+    true_m, turned_m = walking(yaw_deg), walking(yaw_deg + 90.0)
+    plain = rays(true_m, true_m)
+    first, second = (front_back_flip.yaw_deg(turn, true_m[AT]) for turn in plain.rotations)
+    found = fused(turned_m[AT], rays(true_m, true_m, (first + 17.0, second - 11.0)), 0.86)
+    assert found.exchanged == Exchanged((0, 0), (0, 0))
+    assert np.linalg.norm(found.joints_m - true_m[AT], axis=1).mean() < 0.05
+
+
 def test_a_sure_view_is_hardly_ever_confused_and_an_unsure_one_half_the_time() -> None:
     """Rates of made-up people whom views are so sure of: 37, 15, 8 and .1 %."""
     rates = [front_back_flip.confused(sure) for sure in (0.54, 0.64, 0.7, 0.92)]
