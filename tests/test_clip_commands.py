@@ -7,9 +7,10 @@ from typing import Any
 import pytest
 from typed import instead, typed
 
-from common.config.part_settings import BusSettings
+from common.config.part_settings import BusSettings, SettingsError
 from common.config.settings import Settings
 from runtime.faults import Unfollowed
+from synth.scene.scene_clips import SceneSet
 from synth.write import ClipSet
 from tritrack.commands.clip_commands import (
     export,
@@ -88,6 +89,30 @@ def test_people_are_made_as_many_and_as_they_are_asked_for(
     said = typed(synth, "--out", "x", "--json")
     assert made.last[1:3] == (ClipSet("postures", 1, 1, 0, (), 2), "320x240")
     assert json.loads(said.stdout) == {"clips": ["x/a", "x/b"]}
+
+
+def test_scenes_are_made_as_they_are_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    made = instead(monkeypatch, "tritrack.making.make_clips", [Path("x/a")])
+    words = ["--people", 2, "--seconds", 8, "--cameras", 3, "--takes", 4, "--seed", 7]
+    typed(synth, "--out", "x", *words, "--no-opening")
+    assert made.last[:3] == (Path("x"), SceneSet(2, 8.0, 4, 7, 3, opening=False), "320x240")
+    typed(synth, "--out", "x", "--people", 1)
+    assert made.last[1] == SceneSet(1, 10.0, 1, 0, 2, opening=True)
+
+
+@pytest.mark.parametrize(
+    ("words", "reason"),
+    [
+        (["--people", 2, "--motion", "free"], "--motion is of clips of one person: leave it or"),
+        (["--people", 2, "--performers", 2], "--performers is of clips of one person"),
+        (["--people", 2, "--posture", "squat"], "--posture is of clips of one person"),
+        (["--seconds", 9], "--seconds needs --people: other clips have their own"),
+        (["--no-opening"], "--no-opening needs --people: other clips have their own"),
+    ],
+)
+def test_what_does_not_go_with_scenes_is_refused(words: list[Any], reason: str) -> None:
+    with pytest.raises(SettingsError, match=reason):
+        typed(synth, "--out", "x", *words)
 
 
 def test_all_that_is_typed_for_one_camera_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:

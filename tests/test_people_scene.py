@@ -116,6 +116,16 @@ def test_the_room_is_empty_then_each_is_in_a_t_pose_of_their_own(scenes: list[Sc
     assert len({part.someone.seed for one in scenes for part in one.parts}) == 12
 
 
+def test_without_an_opening_people_are_there_and_move_from_the_first_frame() -> None:
+    rig = rig_around((64, 48), 2, 3)
+    one = scene(SceneSeed(2, 4.0, 3, 3, 33, opening=False), rig, FPS)
+    phases = [part.motion.phase for part in one.parts]
+    assert (phases[0] == MOTION).all()
+    assert all(set(phase.tolist()) <= {EMPTY, MOTION} for phase in phases)
+    moved = one.parts[0].motion.joints_m
+    assert np.linalg.norm(moved[25] - moved[0], axis=1).max() > 0.2, "no T-pose before"
+
+
 def test_who_leaves_is_gone_and_comes_in_again(scenes: list[Scene]) -> None:
     phases = [part.motion.phase for part in scenes[LEADS.index("leave")].parts]
     left = [phase for phase in phases if (phase[30:] == EMPTY).any()]

@@ -13,7 +13,7 @@ from common.rig.rig_file import load_rig
 from synth.motion.motions import Motion, performance
 from synth.person.people import person
 from synth.person.skeleton import JOINTS
-from synth.picture.actors import Part
+from synth.picture.actors import Part, Thing
 from synth.picture.exposure import default_rig
 from synth.picture.render import render, render_scene
 from synth.scene.scene_clips import SceneSet, in_pictures, together, write_scenes
@@ -84,6 +84,29 @@ def test_a_wall_hides_who_is_behind_it_and_shadows_add_up() -> None:
         darker = (own - both).max(axis=2) > 6
         assert darker[bare].sum() > 20, "the other's shadow is there"
         assert ((both - own).max(axis=2)[bare] <= 3).all(), "and nothing is brighter"
+
+
+def test_a_thing_hides_what_is_behind_it_and_is_no_part_of_a_person() -> None:
+    """A box of 0.4 m before a trunk, by hand: 401 px / 320 * 160 at 4 m make 20 px a side."""
+    rig, part = default_rig(160, 120), placed(1, (0.0, 0.0))
+    places = np.tile([0.0, 1.1, 0.6], (2, 1))
+    red = Thing((0.4, 0.4, 0.4), (0, 0, 255), places)
+    shot, bare = next(render_scene([part], rig, 4, 9, [red])), next(render(*part, rig, 4, 9))
+    blue, green, reds = (shot.frames[0][..., k].astype(int) for k in range(3))
+    box = (reds > 60) & (reds > 3 * blue) & (reds > 3 * green)
+    rows, columns = np.nonzero(box)
+    side = 401.14 / 2 * 0.4 / (4.5 - 0.8)
+    assert np.ptp(rows) + 1 == pytest.approx(side, abs=1.5)
+    assert np.ptp(columns) + 1 == pytest.approx(side, abs=1.5)
+    inside = cv2.erode(box.astype(np.uint8), np.ones((3, 3))).astype(bool)
+    assert bare.masks[0][inside].any()
+    assert not shot.masks[0][0][inside].any()
+    about = ~cv2.dilate(box.astype(np.uint8), np.ones((3, 3))).astype(bool)
+    np.testing.assert_array_equal(shot.masks[0][0][about], bare.masks[0][about])
+    behind = next(render_scene([part], rig, 4, 9, [red._replace(places_m=places - [0, 0, 1.5])]))
+    np.testing.assert_array_equal(behind.masks[0][0], bare.masks[0])
+    gone = next(render_scene([part], rig, 4, 9, [red._replace(places_m=places * np.nan)]))
+    np.testing.assert_array_equal(gone.frames[0], bare.frames[0])
 
 
 def test_who_is_behind_a_camera_is_not_in_its_picture() -> None:

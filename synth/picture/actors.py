@@ -1,4 +1,4 @@
-"""The people of a scene as surfaces: their colours, and where each vertex is in each frame."""
+"""People and things of a scene as surfaces: colours, and where each vertex is in each frame."""
 
 from typing import Final, NamedTuple
 
@@ -7,13 +7,22 @@ from numpy.typing import NDArray
 
 from synth.motion.motions import Motion
 from synth.person.mesh import Mesh, body_mesh
-from synth.person.people import PATTERNS, Look, Person
+from synth.person.people import PATTERNS, Colour, Look, Person
 from synth.person.rings import MATERIAL, MATERIALS
 from synth.picture.exposure import blurred
 from synth.picture.raster import skin
 
 SHUTTER: Final = 0.4
 """Open time of the shutter, over the frame period."""
+BOX: Final = np.array(
+    [
+        *((0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5)),
+        *((0, 4, 5), (0, 5, 1), (2, 3, 7), (2, 7, 6)),
+        *((0, 2, 6), (0, 6, 4), (1, 5, 7), (1, 7, 3)),
+    ]
+)
+"""Faces of a box, seen from outside anticlockwise; bits of a corner are its sides of x, y, z."""
+NO_PATTERN: Final = (0.0, 1.0, -1.0)
 
 
 class Part(NamedTuple):
@@ -23,8 +32,17 @@ class Part(NamedTuple):
     motion: Motion
 
 
+class Thing(NamedTuple):
+    """A box that people carry."""
+
+    sides_m: tuple[float, float, float]
+    colour: Colour
+    places_m: NDArray[np.float64]
+    """(n, 3) of its middle; NaN while it is not in the room."""
+
+
 class Actor(NamedTuple):
-    """A person's surface in all frames."""
+    """The surface of a person or a thing in all frames."""
 
     mesh: Mesh
     palette: NDArray[np.float64]
@@ -44,6 +62,18 @@ def actor_of(part: Part) -> Actor:
     pattern = (float(PATTERNS.index(look.pattern)), look.pitch_m, float(MATERIAL["shirt"]))
     places, motion = _placed(mesh, part.motion), part.motion
     return Actor(mesh, palette(look), pattern, places, motion.present, blurred(motion))
+
+
+def thing_of(thing: Thing) -> Actor:
+    """The surface of a box in all frames; it stays upright."""
+    corners = np.array([*np.ndindex(2, 2, 2)]) - 0.5
+    rest = corners * thing.sides_m
+    bones, shares = np.zeros((len(rest), 2), np.int64), np.zeros(len(rest))
+    mesh = Mesh(rest, np.zeros((1, 3)), bones, shares, BOX, BOX[:, 0] * 0)
+    places = thing.places_m[:, None] + rest
+    present, still = np.isfinite(places).all((1, 2)), np.zeros(len(places), np.bool_)
+    colours = np.array([thing.colour] * 2, np.float64)
+    return Actor(mesh, colours, NO_PATTERN, places, np.asarray(present), still)
 
 
 def palette(look: Look) -> NDArray[np.float64]:

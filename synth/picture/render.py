@@ -13,7 +13,7 @@ from common.rig.camera import Rig, project
 from common.video.pictures import Image
 from synth.motion.motions import Motion
 from synth.person.people import Person
-from synth.picture.actors import Actor, Part, actor_of, surfaces
+from synth.picture.actors import Actor, Part, Thing, actor_of, surfaces, thing_of
 from synth.picture.exposure import exposures
 from synth.picture.raster import cover, draw, expose, gather, shade
 from synth.picture.synth_room import LIGHT_MAP_PX, Lamp, Room, furnished, lamp_pixels, lit_from
@@ -45,6 +45,8 @@ class _Scene(NamedTuple):
     """The constant part of a clip."""
 
     cast: tuple[Actor, ...]
+    """People, then things."""
+    people: int
     room: Room
     rig: Rig
     scale: int
@@ -65,12 +67,15 @@ def render(
         seed: Seed of the differences between takes: noise, exposure.
         moving: Whether screens play, and trees sway, behind the person.
     """
-    scene = _scene_of((Part(someone, motion),), rig, room_of(room_seed, rig, moving), solid=False)
+    cast, room = (actor_of(Part(someone, motion)),), room_of(room_seed, rig, moving)
+    scene = _Scene(cast, 1, room, rig, _scale(rig), solid=False)
     for frames, masks in _shots(scene, motion.fps, seed):
         yield Shot(frames, tuple(mask[0] for mask in masks))
 
 
-def render_scene(parts: Sequence[Part], rig: Rig, room_seed: int, seed: int) -> Iterator[Shot]:
+def render_scene(
+    parts: Sequence[Part], rig: Rig, room_seed: int, seed: int, things: Sequence[Thing] = ()
+) -> Iterator[Shot]:
     """The frames of several people in a room: what is nearer hides what is farther.
 
     Args:
@@ -78,14 +83,16 @@ def render_scene(parts: Sequence[Part], rig: Rig, room_seed: int, seed: int) -> 
         rig: As for `render`.
         room_seed: As for `render`.
         seed: As for `render`.
+        things: What they carry, of the same frames.
     """
-    scene = _scene_of(parts, rig, room_of(room_seed, rig), solid=True)
+    cast = (*map(actor_of, parts), *map(thing_of, things))
+    scene = _Scene(cast, len(parts), room_of(room_seed, rig), rig, _scale(rig), solid=True)
     return _shots(scene, parts[0].motion.fps, seed)
 
 
-def _scene_of(parts: Sequence[Part], rig: Rig, room: Room, *, solid: bool) -> _Scene:
-    scale = max(2, round(FINE_PX / rig.width))
-    return _Scene(tuple(map(actor_of, parts)), room, rig, scale, solid)
+def _scale(rig: Rig) -> int:
+    """Number of samples per pixel, each way."""
+    return max(2, round(FINE_PX / rig.width))
 
 
 def _shots(scene: _Scene, fps: float, seed: int) -> Iterator[Shot]:
@@ -127,12 +134,12 @@ def _bodies(scene: _Scene, i: int) -> list[Coverage]:
     shape, found = (rig.height, rig.width), []
     for n in range(len(rig.cameras)):
         body = np.zeros((*shape, 4), np.float32)
-        masks = np.zeros((len(scene.cast), *shape), np.bool_)
+        masks = np.zeros((scene.people, *shape), np.bool_)
         moments = len(drawings[0].moments) if drawings else 0
         for k in range(moments):
             box, whose = _drawn(scene, n, drawings, k, body)
             if k == 0:
-                masks[:, *box] = _covered(whose, len(scene.cast), scene.scale)
+                masks[:, *box] = _covered(whose, scene.people, scene.scale)
         found.append((body, masks))
     return found
 

@@ -10,9 +10,10 @@ from common.rig.camera import Rig
 from synth.motion.motions import EMPTY, MOTION, Motion
 from synth.person.people import Person, person
 from synth.person.skeleton import JOINTS
-from synth.picture.actors import Part
+from synth.picture.actors import Part, Thing
 from synth.picture.render import room_of
 from synth.scene.beats import BEATS
+from synth.scene.carried import carried
 from synth.scene.floor import Ground, ground, inside, way_out
 from synth.scene.plot import Clash, Contact, Plot, touching
 from synth.scene.script import Script, places
@@ -46,6 +47,9 @@ class SceneSeed(NamedTuple):
     seed: int
     take: int
     room_seed: int
+    opening: bool = True
+    """Whether it begins with the empty room and T-poses; False: people are there and move from
+    the first frame."""
 
 
 class Scene(NamedTuple):
@@ -55,6 +59,8 @@ class Scene(NamedTuple):
     """By person."""
     contacts: tuple[Contact, ...]
     """Who touches whom, and when."""
+    things: tuple[Thing, ...]
+    """What they carry."""
 
 
 def scene(wanted: SceneSeed, rig: Rig, fps: float) -> Scene:
@@ -68,7 +74,7 @@ def scene(wanted: SceneSeed, rig: Rig, fps: float) -> Scene:
     Raises:
         ValueError: When the people do not find room before the cameras.
     """
-    people, _, seed, take, room_seed = wanted
+    people, _, seed, take, room_seed, _ = wanted
     place = ground(rig, room_of(room_seed, rig))
     cast = [person(100 * seed + MOST_PEOPLE * (take - 1) + n) for n in range(people)]
     for attempt in range(TRIES):
@@ -88,6 +94,8 @@ def _plotted(wanted: SceneSeed, place: Ground, rng: np.random.Generator) -> Plot
         Clash: When a beat does not work out.
     """
     plot = _opened(wanted.people, place, rng)
+    if not wanted.opening:
+        plot = plot._replace(now_s=0.0)
     leads = LEADS if wanted.people > 1 else ALONE
     lead = leads[(wanted.take - 1) % len(leads)]
     while plot.now_s < wanted.lasts_s:
@@ -137,23 +145,24 @@ def _played(cast: list[Person], plot: Plot, place: Ground, wanted: SceneSeed, fp
     Raises:
         Clash: When bodies come too close.
     """
-    count = round(wanted.lasts_s * fps)
     parts = []
     for someone, script in zip(cast, plot.scripts, strict=True):
-        phase = _phases(script, place, count, fps)
+        phase = _phases(script, place, wanted, fps)
         parts.append(Part(someone, acted(someone, script, phase, fps, wanted.take)))
-    time_s = np.arange(count) / fps
+    time_s = np.arange(len(parts[0].motion.phase)) / fps
     for one, other in combinations(range(len(parts)), 2):
         near = touching(plot, (one, other), time_s)
         refuse_collisions(parts[one].motion, parts[other].motion, near)
-    return Scene(tuple(parts), plot.contacts)
+    things = carried(parts, plot.contacts, fps)
+    return Scene(tuple(parts), plot.contacts, things)
 
 
-def _phases(script: Script, place: Ground, count: int, fps: float) -> NDArray[np.uint8]:
+def _phases(script: Script, place: Ground, wanted: SceneSeed, fps: float) -> NDArray[np.uint8]:
     """Phase of each frame, (n,); EMPTY while the person is out of the room."""
-    path = places(script, np.arange(count) / fps)
-    there = inside(place.room, path, BEHIND_M)
-    phase = opening_phase(count, fps) if there[0] else np.full(count, MOTION, np.uint8)
+    count = round(wanted.lasts_s * fps)
+    there = inside(place.room, places(script, np.arange(count) / fps), BEHIND_M)
+    opens = wanted.opening and bool(there[0])
+    phase = opening_phase(count, fps) if opens else np.full(count, MOTION, np.uint8)
     return np.where(there, phase, np.uint8(EMPTY))
 
 

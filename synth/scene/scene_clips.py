@@ -33,7 +33,10 @@ PER_PERSON: Final = ("measures", "performer")
 """Arrays of the truth with one row per person."""
 SHOWN: Final = 0.5
 """Share of a person's joints that a picture contains when the person is in it."""
+SCENE_S: Final = 10.0
+"""Duration of a scene where none is given."""
 LASTS_S: Final = (3.0, 600.0)
+"""Range of it."""
 
 
 class SceneSet(NamedTuple):
@@ -41,13 +44,16 @@ class SceneSet(NamedTuple):
 
     people: int
     """1 to MOST_PEOPLE."""
-    lasts_s: float = 10.0
+    lasts_s: float = SCENE_S
     takes: int = 1
     """Number of scenes, each of other people in another room."""
     seed: int = 0
     """The same seed gives the same scenes, byte for byte."""
     cameras: int = 2
     """1 to MOST_CAMERAS."""
+    opening: bool = True
+    """Whether they begin with the empty room and T-poses; False: people are there and move from
+    the first frame."""
 
 
 def write_scenes(
@@ -80,7 +86,7 @@ def write_scenes(
     for take in range(1, wanted.takes + 1):
         folders.append(out / f"people{wanted.people}_s{wanted.seed:02d}_t{take}")
         room_seed = wanted.seed * ROOM_SEED + take
-        asked = SceneSeed(wanted.people, wanted.lasts_s, wanted.seed, take, room_seed)
+        asked = SceneSeed(*wanted[:2], wanted.seed, take, room_seed, wanted.opening)
         _write_scene(folders[-1], asked, rig)
         if progress is not None:
             progress(take, wanted.takes)
@@ -94,7 +100,7 @@ def _write_scene(folder: Path, wanted: SceneSeed, rig: Rig) -> None:
         raise SynthError(str(error)) from error
     folder.mkdir(parents=True, exist_ok=True)
     filming = Filming(rig, wanted.room_seed, wanted.take + 1000 * wanted.seed)
-    shots = render_scene(made.parts, rig, wanted.room_seed, filming.seed)
+    shots = render_scene(made.parts, rig, wanted.room_seed, filming.seed, made.things)
     masks = filmed(folder, shots, rig, FPS)
     (folder / "meta.json").write_text(json.dumps(_meta(made, filming, wanted), indent=1) + "\n")
     gain = exposures(len(rig.cameras), len(made.parts[0].motion.phase), filming.seed, FPS)

@@ -102,9 +102,8 @@ def synth(
         int | None, typer.Option(help="Scenes instead: so many people in a room at once, 1 to 5.")
     ] = None,
     seconds: Annotated[float | None, typer.Option(help="How long a scene of --people is.")] = None,
-    takes: Annotated[
-        int, typer.Option(min=1, max=100, help="Takes of each posture by each person.")
-    ] = 1,
+    opening: Annotated[bool, typer.Option(help="A scene begins with an empty room.")] = True,
+    takes: Annotated[int, typer.Option(min=1, max=100, help="Takes of each, or scenes.")] = 1,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the first performer.")] = 0,
     size: Annotated[
         str, typer.Option(help="Picture size, WIDTHxHEIGHT.", callback=size_given)
@@ -125,21 +124,21 @@ def synth(
 
     Example: tritrack synth --out scenes --people 2 --cameras 3 --takes 4 --seed 7
     """
-    from synth.scene.scene_clips import SceneSet
+    from synth.scene.scene_clips import SCENE_S, SceneSet
     from synth.write import ClipSet
     from tritrack.making import make_clips
 
     wanted: ClipSet | SceneSet
     if people is None:
-        _refuse(("--seconds", seconds), because="needs --people: other clips have their length")
-        number = 1 if performers is None else performers
-        some = (motion or "postures", number, takes, seed, tuple(posture or ()), cameras)
+        scenes = (("--seconds", seconds), ("--no-opening", None if opening else True))
+        _refuse(*scenes, because="needs --people: other clips have their own")
+        some = (motion or "postures", performers or 1, takes, seed, tuple(posture or ()), cameras)
         wanted = ClipSet(*some, moving=bool(moving))
     else:
-        whose, what = ("--performers", performers), (("--motion", motion), ("--posture", posture))
-        alone = (*what, whose, ("--moving", moving))
-        _refuse(*alone, because="is of clips of one person: leave it or --people out")
-        wanted = SceneSet(people, 10.0 if seconds is None else seconds, takes, seed, cameras)
+        alone = {"--motion": motion, "--posture": posture, "--performers": performers}
+        alone |= {"--moving": moving}
+        _refuse(*alone.items(), because="is of clips of one person: leave it or --people out")
+        wanted = SceneSet(people, seconds or SCENE_S, takes, seed, cameras, opening)
     made = make_clips(out, wanted, size, console)
     facts = {"clips": [str(folder) for folder in made]}
     tell(facts, json_wanted, f"{counted(len(made), 'clip')} written to {out}")
