@@ -14,11 +14,10 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from calibration.gate.known_rig import guess_of
 from calibration.person.person_calibration import calibrated_by_person
 from calibration.person.rig_quality import PersonCalibration
 from calibration.tracks.joint_tracks import JointTrack, Sighting, Sightings
-from calibration.tracks.rig_guess import PLACE, rotation
+from calibration.tracks.rig_guess import PLACE, guess_of, rotation
 from common.body.body import JOINT_NAMES, OTHER_SIDE, Vector
 from common.rig.camera import Camera, Rig, as_matrix, as_row, centre, project
 from common.rig.rig_file import CalibrationError

@@ -7,9 +7,9 @@ import msgspec
 import numpy as np
 import pytest
 
-from calibration.gate.known_rig import as_ideal, guess_of
+from calibration.gate.known_rig import as_ideal
 from calibration.tracks.joint_tracks import JointTrack, Sighting
-from calibration.tracks.rig_guess import RIG, pinholes, rig_of
+from calibration.tracks.rig_guess import RIG, guess_of, pinholes, rig_of
 from common.rig.camera import Rig, as_matrix, as_row, paper_rig
 
 GUESS = np.array([5.3, 5.6, -0.1, 0.07, 1.3, -1.1, 0.12, -0.05, -3.2, 1.6, -2.4])

@@ -19,7 +19,7 @@ from calibration.tracks.lateness import Clock
 from common.bus.messages import Body
 from common.config.part_settings import SettingsError
 from common.config.settings import Settings
-from common.method import METHODS
+from common.method import METHODS, Mode
 from common.video.clip_facts import Act, Clip, ClipView, Meta
 from common.video.clip_sources import ClipError
 from common.video.pictures import Ending
@@ -32,7 +32,7 @@ from runtime.offline.performance import Performance, Prepared, Watch
 from runtime.offline.rig_check import Witness
 from runtime.offline.rig_from_person import Looked
 from runtime.overrides import overridden
-from runtime.steps.method_cameras import refuse_too_many
+from runtime.steps.method_cameras import refuse_too_many, refuse_uncalibrated
 from runtime.store.past_run import open_run
 from runtime.store.pose_arrays import poses
 from runtime.store.runs import NO_PERSON_SEEN
@@ -455,7 +455,7 @@ def test_two_of_three_cameras_give_what_a_clip_of_these_two_gives(
             True,
             "three: the paper's mode is for two cameras: name two .*--views 1,2",
         ),
-        ("default", False, "three: 3 cameras need a calibration: make one .*--views 1,2"),
+        ("default", False, "three: 3 cameras need a calibration .it rained.: .*--views 1,2"),
         ("default", True, ""),
     ],
 )
@@ -467,6 +467,11 @@ def test_three_cameras_are_for_the_default_mode_and_a_calibration(
     clip = Clip("three", (*VIEWS, third), 1, rig if calibrated else None, Meta())
     if said:
         with pytest.raises(ClipError, match=f"^{said}"):
-            refuse_too_many(clip, METHODS[mode])
+            _refuse(clip, mode)
     else:
-        refuse_too_many(clip, METHODS[mode])
+        _refuse(clip, mode)
+
+
+def _refuse(clip: Clip, mode: Mode) -> None:
+    refuse_too_many(clip, METHODS[mode])
+    refuse_uncalibrated(clip, "it rained")

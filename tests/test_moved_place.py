@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from staging import RIG, standing
 
-from calibration.gate.known_rig import guess_of
 from calibration.gate.moved_place import (
     PLACES,
     Person,
@@ -23,7 +22,7 @@ from calibration.person.rig_starts import known_of
 from calibration.tracks import person_prior as prior
 from calibration.tracks import rig_guess
 from calibration.tracks.joint_tracks import JointTrack, Sighting
-from calibration.tracks.rig_guess import LATE, PLACE, Pinhole, pinholes, rotation
+from calibration.tracks.rig_guess import LATE, PLACE, Pinhole, guess_of, pinholes, rotation
 from common.body.kinematics import joints
 from common.body.proportions import body_vector, thesis_bdp
 from common.bus.messages import ViewerNumber

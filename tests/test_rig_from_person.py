@@ -30,7 +30,7 @@ from runtime.offline.rig_from_person import (
     by_person,
     calibration_facts,
     on_time,
-    sighting_of,
+    sightings_of,
 )
 from runtime.store.pose_arrays import poses
 from viewer.room.background_source import Opening
@@ -81,17 +81,20 @@ class Looks:
     def __init__(self, monkeypatch: pytest.MonkeyPatch, clock: Clock = Clock(0.0)) -> None:
         self.clock, self.late_s, self.fault = clock, clock.late_s, ""
         self.asked: list[tuple[Any, ...]] = []
-        monkeypatch.setattr(rig_from_person, "sighting_of", lambda *_: self.sighting)
-        monkeypatch.setattr(rig_from_person, "clock_of", self.clock_of)
-        place = "calibration.person.person_calibration.calibrated_by_person"
+        monkeypatch.setattr(rig_from_person, "sightings_of", lambda *_: self.sighting)
+        monkeypatch.setattr(rig_from_person, "clocks_of", self.clocks_of)
+        place = "calibration.person.many_calibration.calibrated_by_all"
         monkeypatch.setattr(place, self.calibrated)
 
-    def clock_of(self, sighting: object) -> Clock:
+    def clocks_of(self, sighting: object) -> tuple[Clock, ...]:
         assert sighting is self.sighting
-        return self.clock
+        return (self.clock,)
 
-    def calibrated(self, *given: Any, clocks: tuple[Clock, ...]) -> PersonCalibration:
-        self.asked.append((*given, clocks))
+    def calibrated(
+        self, films: Any, stature_m: float, fov_deg: None, by_clip: tuple[tuple[Clock, ...], ...]
+    ) -> PersonCalibration:
+        (clocks,) = by_clip
+        self.asked.append((films, stature_m, clocks))
         if self.fault:
             raise CalibrationError(self.fault)
         return PersonCalibration(TURNED, (self.late_s,), clocks, QUALITY)
@@ -178,9 +181,9 @@ def test_less_than_three_fifths_of_a_frame_of_view_2_is_not_late(
 ) -> None:
     """Every second of 30 a second: 0.6 of 1 / 15 s is 0.04 s."""
     clip = first_two()
-    assert on_time(clip, Clock(late_s), late_s).views[1].late_s == set_by_s
+    assert on_time(clip, (Clock(late_s),), (late_s,)).views[1].late_s == set_by_s
     unsure = Clock(late_s, (1.0,))
-    assert on_time(clip, unsure, late_s) == clip
+    assert on_time(clip, (unsure,), (late_s,)) == clip
 
 
 class Pass:
@@ -226,7 +229,7 @@ LANDMARKS = Landmarks(tuple((40.0 + 3 * n, 100.0 - 5 * n) for n in range(15)), (
 
 def test_each_view_is_looked_at_with_its_own_state(monkeypatch: pytest.MonkeyPatch) -> None:
     passed, settings = Pass(monkeypatch, 3), Settings(mode="paper")
-    first, second, size_px = sighting_of(first_two(), settings, METHOD, {}, {})
+    (first, second), size_px = sightings_of(first_two(), settings, METHOD, {}, {})
     assert passed.inits == [
         (Setup(1, None, settings, METHOD), "bg1", None),
         (Setup(2, None, settings, METHOD), "bg2", LANDMARKS),
@@ -242,10 +245,10 @@ def test_a_clip_is_looked_at_until_a_camera_is_moved_or_enough_is_seen(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     Pass(monkeypatch, 9, moved_at=4)
-    first, second, _ = sighting_of(first_two(), Settings(), METHOD, {}, {})
+    (first, second), _ = sightings_of(first_two(), Settings(), METHOD, {}, {})
     assert (len(first.times_s), len(second.times_s)) == (5, 4), "the moved frame is the last"
     assert rig_from_person.MOST_FRAMES == 3000
     monkeypatch.setattr(rig_from_person, "MOST_FRAMES", 3)
     Pass(monkeypatch, 9)
-    first, second, _ = sighting_of(first_two(), Settings(), METHOD, {}, {})
+    (first, second), _ = sightings_of(first_two(), Settings(), METHOD, {}, {})
     assert (len(first.times_s), len(second.times_s)) == (3, 2)

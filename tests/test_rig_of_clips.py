@@ -14,7 +14,7 @@ from common.config.settings import Settings
 from common.rig.camera import paper_rig
 from common.rig.rig_file import CalibrationError
 from common.video.clip_facts import Clip, ClipView, Meta
-from runtime.offline import rig_of_clips
+from runtime.offline import rig_from_person, rig_of_clips
 from runtime.offline.rig_from_person import ON_TIME
 from runtime.offline.rig_of_clips import Given, calibrated_by_clips
 
@@ -35,10 +35,11 @@ class Clips:
         self.read: list[dict[int, int]] = []
         self.decoders: list[int] = []
         self.open_sources = 0
-        for name in ("open_clip", "outside_sources", "sighting_of", "clock_of"):
+        for name in ("open_clip", "outside_sources", "sightings_of"):
             monkeypatch.setattr(rig_of_clips, name, getattr(self, name))
         monkeypatch.setattr("runtime.offline.rig_of_clips.config_file.load", self.load)
-        monkeypatch.setattr(rig_of_clips, "calibrated_by_person", self.calibrated)
+        monkeypatch.setattr(rig_of_clips, "calibrated_by_all", self.calibrated)
+        monkeypatch.setattr(rig_from_person, "clocks_of", self.clocks_of)
         monkeypatch.setattr(rig_of_clips, "Decoder", self.decoder)
 
     @contextmanager
@@ -64,7 +65,7 @@ class Clips:
         yield {"of": settings.clip}
         self.open_sources -= 1
 
-    def sighting_of(
+    def sightings_of(
         self, clip: Clip, settings: Settings, _: object, readers: dict[int, Any], sources: Any
     ) -> str:
         assert clip == self.clips[settings.clip]
@@ -75,8 +76,8 @@ class Clips:
         )
         return settings.clip
 
-    def clock_of(self, sighting: str) -> Clock:
-        return Clock(float(sighting[1:]))
+    def clocks_of(self, seen: str) -> tuple[Clock, ...]:
+        return (Clock(float(seen[1:])),) * (len(self.clips[seen].views) - 1)
 
     def calibrated(self, *given: Any) -> PersonCalibration:
         self.asked.append(given)
@@ -87,7 +88,7 @@ def test_every_clip_is_seen_by_its_own_films_and_clock(monkeypatch: pytest.Monke
     """The second's settings say how late it is: it is on time by that. The rig is the films'."""
     clips = Clips(monkeypatch, TWO, TWO, TWO, offset="c1")
     found = calibrated_by_clips(clips.paths, Given(1.9, 55.0))
-    clocks = (Clock(0.0), ON_TIME, Clock(2.0))
+    clocks = ((Clock(0.0),), (ON_TIME,), (Clock(2.0),))
     assert clips.asked == [(("c0", "c1", "c2"), 1.9, 55.0, clocks)]
     assert (found.quality, found.clocks) == (QUALITY, (Clock(0.3),))
     assert (found.rig.width, found.rig.height) == (320, 240)
@@ -102,7 +103,7 @@ def test_every_clip_is_seen_by_its_own_films_and_clock(monkeypatch: pytest.Monke
 def test_what_is_not_known_is_looked_for(monkeypatch: pytest.MonkeyPatch) -> None:
     clips = Clips(monkeypatch, TWO)
     calibrated_by_clips(clips.paths, Given())
-    assert clips.asked == [(("c0",), 1.75, None, (Clock(0.0),))]
+    assert clips.asked == [(("c0",), 1.75, None, ((Clock(0.0),),))]
 
 
 @pytest.mark.parametrize(
@@ -113,10 +114,19 @@ def test_a_clip_without_two_films_is_refused(
 ) -> None:
     clips = Clips(monkeypatch, TWO, msgspec.structs.replace(TWO, views=views))
     with pytest.raises(
-        CalibrationError, match=r"^c1 has not two recorded views: name clips of a pair$"
+        CalibrationError, match=r"^c1 has not two recorded views: name clips of several cameras$"
     ):
         calibrated_by_clips(clips.paths, Given())
     assert clips.asked == []
+
+
+def test_clips_of_other_cameras_are_refused_by_their_names(monkeypatch: pytest.MonkeyPatch) -> None:
+    third = ClipView(3, "c.avi", (320, 240), (160, 120), 15.0, 60, name="door")
+    three = msgspec.structs.replace(TWO, views=(FIRST, SECOND, third))
+    clips = Clips(monkeypatch, three, TWO)
+    said = "^c1 has the cameras cam1, cam2, the first clip cam1, cam2, door: name clips of one rig$"
+    with pytest.raises(CalibrationError, match=said):
+        calibrated_by_clips(clips.paths, Given())
 
 
 def test_clips_of_several_sizes_are_refused_with_their_sizes(

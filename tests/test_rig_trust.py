@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from test_person_calibration import PAPER, filmed_by_the_papers_rig
 
-from calibration.gate.known_rig import guess_of
 from calibration.gate.rig_fault import advice_on, exchanged_rig
 from calibration.gate.rig_trust import (
     Trust,
@@ -28,7 +27,7 @@ from calibration.person.rig_starts import known_of
 from calibration.tracks import person_prior as prior
 from calibration.tracks.joint_tracks import JointTrack
 from calibration.tracks.lateness import Clock
-from calibration.tracks.rig_guess import LATE, RIG, pinholes, rotation
+from calibration.tracks.rig_guess import LATE, RIG, guess_of, pinholes, rotation
 from calibration.tracks.sight_lines import Meeting
 from common.body.body import JOINT_NAMES
 from common.rig.camera import Rig, as_matrix, as_row, centre

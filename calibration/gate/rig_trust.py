@@ -6,7 +6,7 @@ from typing import Final, NamedTuple
 import msgspec
 import numpy as np
 
-from calibration.gate.known_rig import as_ideal, guess_of
+from calibration.gate.known_rig import as_ideal
 from calibration.gate.rig_agreement import SURE_JOINT, motion_m
 from calibration.person.rig_evidence import Evidence, Known, gathered
 from calibration.person.rig_fit import Fit, fitted, sides_of
@@ -19,7 +19,7 @@ from calibration.person.rig_starts import known_of, with_clocks
 from calibration.tracks import person_prior as prior
 from calibration.tracks.joint_tracks import Sighting
 from calibration.tracks.lateness import Clock, clock_of
-from calibration.tracks.rig_guess import BODY, LATE, RIG
+from calibration.tracks.rig_guess import BODY, LATE, RIG, guess_of
 from common.body.body import JOINT_NAMES, Vector
 from common.rig.camera import Rig
 

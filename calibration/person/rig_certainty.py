@@ -43,10 +43,14 @@ def unsure_of(found: Fit, period_s: float) -> tuple[str, ...]:
         found: The rig, with all its numbers free.
         period_s: Time between frames of view 2.
     """
-    covariance = covariance_of(found)
+    return unsure_words(found.guess, covariance_of(found), period_s)
+
+
+def unsure_words(guess: Vector, covariance: Numbers, period_s: float) -> tuple[str, ...]:
+    """The same for a guess and its covariance."""
     errors = np.sqrt(np.diag(covariance))
     focal = float(errors[FOCALS].max())
-    turn_deg = turn_error_deg(found.guess, covariance)
+    turn_deg = turn_error_deg(guess, covariance)
     late_frames = float(late_errors_frames(covariance, period_s).max())
     words = {
         f"focal lengths to {100 * focal:.0f} % only": focal > UNSURE_FOCAL,

@@ -68,13 +68,19 @@ def softened(residual: Numbers) -> Numbers:
 
 def misfits(guess: Vector, evidence: Evidence, sides: tuple[Sides, ...]) -> Vector:
     """All residuals: the priors, and each clip's observations."""
-    rows = prior_misfits(guess, evidence.known)
+    rows = prior_misfits(guess, evidence.known) + observed_misfits(guess, evidence, sides)
+    return np.concatenate(rows)
+
+
+def observed_misfits(guess: Vector, evidence: Evidence, sides: tuple[Sides, ...]) -> list[Vector]:
+    """Residuals of each clip's observations."""
+    rows: list[Vector] = []
     for n, clip in enumerate(evidence.clips):
         one = explained(guess, evidence, n, sides[n])
         rows += data_misfits(one, evidence.own_share)
         rows += standing_misfits(one, evidence.known.stature_m)
         rows.append(facing_misfits(guess, one, clip.first))
-    return np.concatenate(rows)
+    return rows
 
 
 def explained(guess: Vector, evidence: Evidence, number: int, sides: Sides) -> Explained:

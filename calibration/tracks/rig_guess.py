@@ -1,6 +1,7 @@
 """A rig as a vector for the fit, and back."""
 
 import math
+from collections.abc import Sequence
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -8,7 +9,7 @@ from numpy.typing import NDArray
 
 from calibration.tracks.person_prior import LENGTHS
 from common.body.body import Vector
-from common.rig.camera import PAPER_ROTATIONS, Camera, Rig, as_matrix, as_row
+from common.rig.camera import PAPER_ROTATIONS, Camera, Rig, as_matrix, as_row, centre
 
 NAMES: Final = (
     *("log_focal_1", "log_focal_2"),
@@ -67,12 +68,39 @@ def _about(axis: int, angle: float) -> NDArray[np.float64]:
     return turn
 
 
-def rig_of(cameras: tuple[Pinhole, Pinhole], size_px: tuple[int, int], origin_m: Vector) -> Rig:
-    """Two cameras as a rig whose world has its origin at a place in theirs, (3,)."""
+def guess_of(rig: Rig) -> Vector:
+    """(RIG,) the vector of two cameras, in a world where camera 1 is above the origin and has no
+    yaw."""
+    turns = [_turn_of(camera) for camera in rig.cameras]
+    places = [centre(camera) for camera in rig.cameras]
+    yaw = turns[0][0]
+    base = places[1] - places[0]
+    x = math.cos(yaw) * base[0] - math.sin(yaw) * base[2]
+    z = math.sin(yaw) * base[0] + math.cos(yaw) * base[2]
+    guess = np.empty(RIG)
+    guess[:2] = [math.log(camera.K[0][0]) for camera in rig.cameras]
+    guess[2:5] = (*turns[0][1:], places[0][1])
+    guess[5:] = (turns[1][0] - yaw, *turns[1][1:], x, places[1][1], z)
+    return guess
+
+
+def _turn_of(camera: Camera) -> tuple[float, float, float]:
+    """Yaw, pitch and roll, radians, as `rotation` takes them."""
+    R = np.array(camera.R)
+    forward = R[2]
+    yaw = math.atan2(-forward[0], -forward[2])
+    pitch = math.asin(max(-1.0, min(1.0, float(forward[1]))))
+    level = np.array([math.cos(yaw), 0.0, -math.sin(yaw)])
+    roll = math.atan2(-float(R[1] @ level), float(R[0] @ level))
+    return yaw, pitch, roll
+
+
+def rig_of(cameras: Sequence[Pinhole], size_px: tuple[int, int], origin_m: Vector) -> Rig:
+    """Cameras as a rig whose world has its origin at a place in theirs, (3,)."""
     told = []
-    for name, one in zip(("cam1", "cam2"), cameras, strict=True):
+    for number, one in enumerate(cameras, start=1):
         K = np.diag([one.focal_px, one.focal_px, 1.0])
         K[:2, 2] = np.array(size_px) / 2
         t = one.R @ (origin_m - one.centre_m)
-        told.append(Camera(name, as_matrix(K), as_matrix(one.R), as_row(t)))
+        told.append(Camera(f"cam{number}", as_matrix(K), as_matrix(one.R), as_row(t)))
     return Rig(*size_px, tuple(told))

@@ -53,7 +53,7 @@ from runtime.offline.rig_check import (
 )
 from runtime.offline.rig_from_person import Looked, by_person, calibration_facts
 from runtime.offline.video_tracking import Heard, VideoInput, follow_clip, unseen
-from runtime.steps.method_cameras import refuse_too_many
+from runtime.steps.method_cameras import refuse_too_many, refuse_uncalibrated
 from runtime.steps.together import viewer_of
 from runtime.unfinished.work import Course
 from viewer import track
@@ -141,6 +141,7 @@ def track_clip(
     with outside_sources(settings, clip.views) as sources:
         job = _Job(settings, method, decoders, sources, watch, course)
         looked = _as_left(by_person(clip, settings, method, decoders.of, sources), course)
+        refuse_uncalibrated(looked.clip, looked.warning)
         followed = _followed(looked, job, began)
         clocks = clocks_seen(looked.clip, followed.witness)
         late_s = late_by(looked.clip, clocks, offsets_of(settings))

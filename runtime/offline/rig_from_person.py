@@ -6,9 +6,9 @@ from typing import Final, NamedTuple
 import msgspec
 
 from calibration.person.rig_quality import PersonCalibration
-from calibration.tracks.camera_clocks import Clocks
-from calibration.tracks.joint_tracks import Sighting, track_of
-from calibration.tracks.lateness import LEAST_LATE, Clock, clock_of
+from calibration.tracks.camera_clocks import Clocks, clocks_of
+from calibration.tracks.joint_tracks import Sightings, track_of
+from calibration.tracks.lateness import LEAST_LATE, Clock
 from common.bus.messages import View, ViewerNumber
 from common.config.settings import Settings
 from common.method import Method
@@ -16,6 +16,7 @@ from common.npz_file import Facts
 from common.rig.absurd_rig import nearly_one_view
 from common.rig.rig_file import CalibrationError
 from common.video.clip_facts import Clip, set_back
+from common.video.clip_sources import offsets_of
 from common.video.pictures import Reader
 from runtime.offline.frame_pairs import instants, openings
 from viewer import track
@@ -39,14 +40,14 @@ class Looked(NamedTuple):
     estimated."""
 
 
-def sighting_of(
+def sightings_of(
     clip: Clip,
     settings: Settings,
     method: Method,
     readers: Mapping[ViewerNumber, Reader],
     sources: Sources,
-) -> Sighting:
-    """Both views of the person in a clip without a rig, until a camera is moved.
+) -> Sightings:
+    """All views of the person in a clip without a rig, until a camera is moved.
 
     Raises:
         DecoderDied: When a video crashed the decoder.
@@ -68,8 +69,8 @@ def sighting_of(
         is_moved = any(own[-1].shift is not None for own in reports.values() if own)
         if n + 1 == MOST_FRAMES or is_moved:
             break
-    first, second = (track_of(reports[view.number]) for view in clip.views)
-    return Sighting(first, second, clip.views[0].size)
+    tracks = tuple(track_of(reports[view.number]) for view in clip.views)
+    return Sightings(tracks, clip.views[0].size)
 
 
 def by_person(
@@ -79,41 +80,53 @@ def by_person(
     readers: Mapping[ViewerNumber, Reader],
     sources: Sources,
 ) -> Looked:
-    """A recorded clip of two views, with a rig from its person where it has none.
+    """A recorded clip of several views, with a rig from its person where it has none.
 
     It is unchanged where it has a rig, where the method uses no landmarks, where too little of a
     person is seen, and where the views' pictures differ in size.
     """
-    from calibration.person.person_calibration import calibrated_by_person
+    from calibration.person.many_calibration import calibrated_by_all
 
     of_files = all(view.frames for view in clip.views)
     of_one_size = len({view.size for view in clip.views}) == 1
-    if clip.rig is not None or len(clip.views) != 2 or not (of_files and of_one_size):
+    if clip.rig is not None or len(clip.views) < 2 or not (of_files and of_one_size):
         return Looked(clip)
     if not (method.landmarks and method.proposals):
         return Looked(clip)
-    sighting = sighting_of(clip, settings, method, readers, sources)
-    clock = clock_of(sighting) if settings.offset_s is None else ON_TIME
+    seen = sightings_of(clip, settings, method, readers, sources)
+    clocks = believed_clocks(clip, settings, seen)
     try:
-        found = calibrated_by_person((sighting,), settings.body.stature_m, clocks=(clock,))
+        found = calibrated_by_all((seen,), settings.body.stature_m, None, (clocks,))
     except CalibrationError as error:
         told = f"not calibrated by the person: {error}"
-        return Looked(on_time(clip, clock, clock.late_s), None, told, (clock,))
-    clip = on_time(msgspec.structs.replace(clip, rig=found.rig), clock, found.late_s[0])
-    return Looked(clip, found, nearly_one_view(found.rig), (clock,))
+        late_s = tuple(clock.late_s for clock in clocks)
+        return Looked(on_time(clip, clocks, late_s), None, told, clocks)
+    clip = on_time(msgspec.structs.replace(clip, rig=found.rig), clocks, found.late_s)
+    return Looked(clip, found, nearly_one_view(found.rig), clocks)
 
 
-def on_time(clip: Clip, clock: Clock, late_s: float) -> Clip:
-    """The clip with the times of view 2 set back by its delay, where that is found.
+def believed_clocks(clip: Clip, settings: Settings, seen: Sightings) -> Clocks:
+    """The clocks of the views after the first: on time where the user gives all delays."""
+    given = offsets_of(settings)
+    if all(view.number in given for view in clip.views[1:]):
+        return (ON_TIME,) * (len(clip.views) - 1)
+    clocks = zip(clip.views[1:], clocks_of(seen), strict=True)
+    return tuple(ON_TIME if view.number in given else clock for view, clock in clocks)
+
+
+def on_time(clip: Clip, clocks: Clocks, late_s: tuple[float, ...]) -> Clip:
+    """The clip with the times of each view set back by its delay, where that is found.
 
     Args:
-        clip: A clip of two views.
-        clock: Clock of view 2.
-        late_s: The delay by the rig in use.
+        clip: A clip of several views.
+        clocks: Clocks of the views after the first.
+        late_s: Their delays by the rig in use.
     """
-    period_s = clip.every / clip.views[1].fps
-    is_late = clock.is_found and abs(late_s) >= LEAST_LATE * period_s
-    return set_back(clip, (late_s,)) if is_late else clip
+    by_s = [
+        late if clock.is_found and abs(late) >= LEAST_LATE * clip.every / view.fps else 0.0
+        for view, clock, late in zip(clip.views[1:], clocks, late_s, strict=True)
+    ]
+    return set_back(clip, by_s) if any(by_s) else clip
 
 
 def calibration_facts(looked: Looked) -> Facts:

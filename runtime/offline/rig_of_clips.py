@@ -5,19 +5,20 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import NamedTuple
 
-from calibration.person.person_calibration import calibrated_by_person
+from calibration.person.many_calibration import calibrated_by_all
 from calibration.person.rig_quality import Quality
-from calibration.tracks.lateness import Clock, clock_of
+from calibration.tracks.camera_clocks import Clocks
 from common.config import config_file
 from common.config.part_settings import BodySettings
 from common.method import METHODS
 from common.rig.camera import Rig
 from common.rig.rig_file import CalibrationError, fitted
+from common.video.clip_facts import Clip
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
 from common.video.frame_cache import FrameCache
 from common.video.pictures import Reader
-from runtime.offline.rig_from_person import ON_TIME, sighting_of
+from runtime.offline.rig_from_person import believed_clocks, sightings_of
 from viewer.landmarks.landmark_sources import outside_sources
 
 
@@ -35,8 +36,8 @@ class FoundByClips(NamedTuple):
     rig: Rig
     """At the size of their pictures."""
     quality: Quality
-    clocks: tuple[Clock, ...]
-    """Clock of view 2 in each clip."""
+    clocks: Clocks
+    """In each clip, the clocks of the views after the first, one after the other."""
 
 
 def calibrated_by_clips(paths: Sequence[Path], given: Given) -> FoundByClips:
@@ -47,25 +48,39 @@ def calibrated_by_clips(paths: Sequence[Path], given: Given) -> FoundByClips:
         ClipError, SettingsError, DecoderDied, Undecodable: When a clip cannot be used.
     """
     method = METHODS["default"]
-    sightings, clocks, sizes = [], [], set()
+    films, clocks, sizes = [], [], set()
+    names: list[str] = []
     with ExitStack() as doors:
-        decoders: list[Reader] = [doors.enter_context(Decoder()) for _ in range(2)]
+        decoders: list[Reader] = []
         for path in paths:
             settings = config_file.load(path)
             clip = open_clip(settings)
-            if len(clip.views) != 2 or not all(view.frames for view in clip.views):
-                raise CalibrationError(f"{path} has not two recorded views: name clips of a pair")
+            names = names or [view.name for view in clip.views]
+            _refuse_another_rig(path, clip, names)
             sizes |= {view.source_size for view in clip.views}
+            while len(decoders) < len(names):
+                decoders.append(doors.enter_context(Decoder()))
             readers = {
                 v.number: FrameCache(one) for v, one in zip(clip.views, decoders, strict=True)
             }
             with outside_sources(settings, clip.views) as sources:
-                sightings.append(sighting_of(clip, settings, method, readers, sources))
-            is_told = settings.offset_s is not None
-            clocks.append(ON_TIME if is_told else clock_of(sightings[-1]))
+                films.append(sightings_of(clip, settings, method, readers, sources))
+            clocks.append(believed_clocks(clip, settings, films[-1]))
     if len(sizes) > 1:
         told = ", ".join(f"{width}x{height}" for width, height in sorted(sizes))
         raise CalibrationError(f"pictures of several sizes ({told}) are not of one rig")
-    found = calibrated_by_person(tuple(sightings), given.stature_m, given.fov_deg, tuple(clocks))
+    found = calibrated_by_all(tuple(films), given.stature_m, given.fov_deg, tuple(clocks))
     rig = fitted(found.rig, sizes.pop(), "the calibration")
     return FoundByClips(rig, found.quality, found.clocks)
+
+
+def _refuse_another_rig(path: Path, clip: Clip, names: Sequence[str]) -> None:
+    """Refuse a clip without several recorded views, or with other cameras than the first clip's."""
+    if len(clip.views) < 2 or not all(view.frames for view in clip.views):
+        raise CalibrationError(f"{path} has not two recorded views: name clips of several cameras")
+    own = [view.name for view in clip.views]
+    if own != names:
+        raise CalibrationError(
+            f"{path} has the cameras {', '.join(own)}, the first clip {', '.join(names)}: name "
+            "clips of one rig"
+        )

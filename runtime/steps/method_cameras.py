@@ -9,8 +9,7 @@ def refuse_too_many(clip: Clip, method: Method) -> None:
     """Refuse a method that does not support that many cameras.
 
     Raises:
-        ClipError: When the clip has more cameras than the method supports, or more than two
-            without a calibration.
+        ClipError: When the clip has more cameras than the method supports.
     """
     several = len(clip.views)
     if method.stick_lifting and several > 1:
@@ -20,8 +19,22 @@ def refuse_too_many(clip: Clip, method: Method) -> None:
             f"{clip.name}: the paper's mode is for two cameras: name two of the {several} in the "
             "settings, or add --views 1,2 to tritrack track"
         )
+
+
+def refuse_uncalibrated(clip: Clip, why: str = "") -> None:
+    """Refuse more than two cameras without a calibration.
+
+    Args:
+        clip: The clip, with the calibration that was found.
+        why: Why the person gave none.
+
+    Raises:
+        ClipError: When it is refused.
+    """
+    several = len(clip.views)
     if clip.rig is None and several > 2:
+        cause = f" ({why})" if why else ""
         raise ClipError(
-            f"{clip.name}: {several} cameras need a calibration: make one (tritrack calibrate "
-            "board), or track two of them without: --views 1,2"
+            f"{clip.name}: {several} cameras need a calibration{cause}: make one (tritrack "
+            "calibrate person, or board), or name two of the cameras (tritrack track --views 1,2)"
         )

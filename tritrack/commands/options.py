@@ -9,8 +9,8 @@ import typer
 
 from common.atomic_file import refuse_special
 from common.bus.messages import MOST_VIEWS, ViewerNumber
+from common.config.part_settings import MOST_OFFSET_S
 from common.config.picture_size import size_of
-from common.config.settings import MOST_OFFSET_S
 
 MODES: Final = "default: most accurate; paper: as published 2004"
 WORKED_ON: Final = "Largest working picture, WIDTHxHEIGHT."

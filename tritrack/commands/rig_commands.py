@@ -46,7 +46,7 @@ def person(
     force: Forced = False,
     json_wanted: JsonWanted = False,
 ) -> None:
-    """Calibrate both cameras by a person who moves.
+    """Calibrate all cameras by a person who moves.
 
     Nothing is printed or measured.
 
@@ -67,9 +67,11 @@ def person(
         f"{round(frames, 1) + 0.0:+.1f}" + ("" if clock.is_found else f" ({clock.state})")
         for frames, clock in zip(quality.late_frames, clocks, strict=True)
     )
+    views = "both views" if len(rig.cameras) == 2 else f"{len(rig.cameras)} views"
+    behind = "view 2 is" if len(rig.cameras) == 2 else f"views 2 to {len(rig.cameras)} are"
     console.print(
-        f"both views agree to {quality.gap_mm:.0f} mm in {counted(quality.moments, 'moment')}; "
-        f"view 2 is late by {late} frames",
+        f"{views} agree to {quality.gap_mm:.0f} mm in {counted(quality.moments, 'moment')}; "
+        f"{behind} late by {late} frames",
         highlight=False,
         soft_wrap=True,
     )
