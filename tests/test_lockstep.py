@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 from collections.abc import Callable
 from contextlib import nullcontext
 from pathlib import Path
@@ -421,6 +422,31 @@ def test_a_clip_of_three_cameras_is_tracked_by_all_of_them(three: Path, tmp_path
         off_px = np.linalg.norm(run["joints_px"][both.frames, n, at] - true_px, axis=1)
         assert off_px.mean() < 2.0
     assert run["seen"][both.frames].all()
+
+
+@pytest.mark.slow
+def test_three_cameras_without_a_calibration_are_calibrated_by_their_person(
+    three: Path, tmp_path: Path
+) -> None:
+    """The distances between joints are as true as with the calibration, but for the scale."""
+    folder = tmp_path / "three"
+    shutil.copytree(three, folder)
+    with Decoders() as decoders:
+        done = track_clip(Settings(clip=str(folder)), decoders)
+    assert done.facts["scale_source"] == "person"
+    assert len(done.facts["calibration"]["cameras"]) == 3
+    assert done.facts["trust"]["believed"]
+    found = poses(done.bodies)
+    truth = np.load(three / "truth.npz")
+    names = truth["joint_names"].tolist()
+    real = truth["joints3d"][:, [names.index(n) for n in found["joint_names"].tolist()]]
+    apart = []
+    for joints_m in (found["joints_m"], real[found["frame"]]):
+        between = np.linalg.norm(joints_m[:, :, None] - joints_m[:, None], axis=-1)
+        apart.append(between[-30:])
+    scale = np.nanmedian(apart[0][..., 0, 1] / apart[1][..., 0, 1])
+    assert scale == pytest.approx(1.0, abs=0.25)
+    assert np.nanmean(np.abs(apart[0] / scale - apart[1])) < 0.03
 
 
 @pytest.mark.slow

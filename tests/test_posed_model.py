@@ -40,6 +40,7 @@ def test_a_calibrated_camera_of_the_papers_kind_turns_the_world_as_the_papers() 
     viewers: tuple[ViewerNumber, ...] = (1, 2)
     for viewer, camera in zip(viewers, paper_rig(SIZE, (9, 9), (4, 4)).cameras, strict=True):
         assert (rotation_of(camera, viewer) == rotation_of(None, viewer)).all()
+    assert (rotation_of(None, 3) == rotation_of(None, 2)).all()
 
 
 def test_size_follows_the_scale() -> None:

@@ -125,8 +125,10 @@ def view_at(rotation: NDArray[np.float64], px_per_m: float, root_px: tuple[float
 
 
 def rotation_of(camera: Camera | None, viewer: ViewerNumber) -> NDArray[np.float64]:
-    """World to camera: the calibrated rotation, or the paper's for this viewer (C1)."""
-    return np.array(PAPER_ROTATIONS[place_in_rig(viewer)] if camera is None else camera.R)
+    """World to camera: the calibrated rotation, or the paper's for this viewer (C1); for cameras
+    that the paper does not have, that of camera 2: no view of theirs is searched."""
+    place = min(place_in_rig(viewer), len(PAPER_ROTATIONS) - 1)
+    return np.array(PAPER_ROTATIONS[place] if camera is None else camera.R)
 
 
 def yaw_of(facing: Facing, viewer: ViewerNumber) -> float:
