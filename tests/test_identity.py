@@ -135,6 +135,20 @@ def test_bodies_of_those_who_are_not_to_be_tracked_are_left_out() -> None:
     assert counted(poses_of((0, 0, 0.09)), near).matches == 0, "it is the other's"
 
 
+def test_hotas_matches_are_those_that_match_often() -> None:
+    """Number 6 is nearer in one frame of three, but number 5 is there in all: 3 matches of one
+    number, whose association is 3 of 3."""
+    bodies = [(i, 5, 0.1) for i in range(3)] + [(1, 6, 0.0)]
+    told = counted(poses_of(*bodies), truth_of([[0.0]] * 3))
+    assert (told.associated, told.aligned) == (3.0, 3)
+
+
+def test_a_number_is_not_theirs_in_frames_in_which_they_are_not_to_be_tracked() -> None:
+    """In frame 1 number 1 is on person 0; person 1 is near, but leaving."""
+    truth = truth_of([[0.0, 2.0], [0.0, 0.1]], absent=((1, 1),))
+    assert counted(poses_of((0, 1, 2.0), (1, 1, 0.01)), truth).identified == 1
+
+
 def test_an_empty_room_and_bodies_without_joints_are_nothing() -> None:
     truth = truth_of([[NAN, NAN], [0.0, NAN]])
     told = counted(poses_of((0, 0, NAN), (1, 0, 0.0), (7, 0, 0.0), (-1, 0, 0.0)), truth)

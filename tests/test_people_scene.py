@@ -25,7 +25,7 @@ from synth.scene.people_scene import (
     refuse_collisions,
     scene,
 )
-from synth.scene.plot import Clash, Plot, touching
+from synth.scene.plot import Clash
 
 FPS = 15.0
 
@@ -127,11 +127,17 @@ def test_without_an_opening_people_are_there_and_move_from_the_first_frame() -> 
 
 
 def test_who_leaves_is_gone_and_comes_in_again(scenes: list[Scene]) -> None:
-    phases = [part.motion.phase for part in scenes[LEADS.index("leave")].parts]
-    left = [phase for phase in phases if (phase[30:] == EMPTY).any()]
-    assert len(left) == 1
-    gone = np.flatnonzero(left[0] == EMPTY)
+    motions = [part.motion for part in scenes[LEADS.index("leave")].parts]
+    (motion,) = (one for one in motions if (one.phase[30:] == EMPTY).any())
+    gone = np.flatnonzero(motion.phase == EMPTY)
     assert gone[-1] - gone[9] + 1 == len(gone) - 9, "out once"
+    (motion,) = (
+        part.motion for part in scenes[LEADS.index("leave")].parts if part.motion.phase is left[0]
+    )
+    arms = motion.joints_m[32 : gone[9]]
+    for side in "lr":
+        wrist, shoulder = (JOINTS.index(f"{side}_{name}") for name in ("wrist", "shoulder"))
+        assert (arms[:, wrist, 1] < arms[:, shoulder, 1] - 0.2).all(), "no T-pose any more"
 
 
 def test_people_walk_forward_and_their_feet_hardly_slide(scenes: list[Scene]) -> None:
@@ -183,15 +189,6 @@ def test_a_room_without_a_place_is_said(monkeypatch: pytest.MonkeyPatch) -> None
     monkeypatch.setattr(made, "room_of", lambda *_: small)
     with pytest.raises(ValueError, match="the cameras have no place in common"):
         scene(SceneSeed(2, 4.0, 0, 1, 1), rig, FPS)
-
-
-def test_contacts_are_of_their_pair_alone(scenes: list[Scene]) -> None:
-    one = next(one for one in scenes if one.contacts)
-    contact = one.contacts[0]
-    times = np.array([contact.from_s - 0.1, contact.from_s, contact.to_s, contact.to_s + 0.1])
-    plot = Plot((), 0.0, frozenset(), (contact,))
-    assert touching(plot, contact.people[::-1], times).tolist() == [False, True, True, False]
-    assert not touching(plot, (contact.people[0], 7), times).any()
 
 
 def test_the_way_out_leads_through_the_nearest_wall_but_not_into_a_camera() -> None:
