@@ -131,9 +131,6 @@ def test_who_leaves_is_gone_and_comes_in_again(scenes: list[Scene]) -> None:
     (motion,) = (one for one in motions if (one.phase[30:] == EMPTY).any())
     gone = np.flatnonzero(motion.phase == EMPTY)
     assert gone[-1] - gone[9] + 1 == len(gone) - 9, "out once"
-    (motion,) = (
-        part.motion for part in scenes[LEADS.index("leave")].parts if part.motion.phase is left[0]
-    )
     arms = motion.joints_m[32 : gone[9]]
     for side in "lr":
         wrist, shoulder = (JOINTS.index(f"{side}_{name}") for name in ("wrist", "shoulder"))
