@@ -94,8 +94,9 @@ def test_people_are_made_as_many_and_as_they_are_asked_for(
 def test_scenes_are_made_as_they_are_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
     made = instead(monkeypatch, "tritrack.making.make_clips", [Path("x/a")])
     words = ["--people", 2, "--seconds", 8, "--cameras", 3, "--takes", 4, "--seed", 7]
-    typed(synth, "--out", "x", *words, "--no-opening")
-    assert made.last[:3] == (Path("x"), SceneSet(2, 8.0, 4, 7, 3, opening=False), "320x240")
+    typed(synth, "--out", "x", *words, "--no-opening", "--alone")
+    wanted = SceneSet(2, 8.0, 4, 7, 3, opening=False, alone=True)
+    assert made.last[:3] == (Path("x"), wanted, "320x240")
     typed(synth, "--out", "x", "--people", 1)
     assert made.last[1] == SceneSet(1, 10.0, 1, 0, 2, opening=True)
 
@@ -107,6 +108,7 @@ def test_scenes_are_made_as_they_are_asked_for(monkeypatch: pytest.MonkeyPatch) 
         (["--people", 2, "--performers", 2], "--performers is of clips of one person"),
         (["--people", 2, "--posture", "squat"], "--posture is of clips of one person"),
         (["--seconds", 9], "--seconds needs --people: other clips have their own"),
+        (["--alone"], "--alone needs --people: other clips have their own"),
         (["--no-opening"], "--no-opening needs --people: other clips have their own"),
     ],
 )

@@ -76,6 +76,8 @@ def test_a_wall_hides_who_is_behind_it_and_shadows_add_up() -> None:
     gone = next(render_scene([placed(1, (0.0, -4.0)), placed(2, (0.5, 0.0))], rig, 4, 9))
     assert not gone.masks[0][0].any()
     assert gone.masks[0][1].any()
+    own = next(render_scene([placed(2, (0.5, 0.0))], rig, 4, 9)).frames[0]
+    np.testing.assert_array_equal(gone.frames[0], own, "nor does he cast a shadow on its front")
     one, two = placed(1, (-0.8, 0.0)), placed(2, (0.6, 0.0))
     both = next(render_scene([one, two], rig, 4, 9)).frames[0].astype(int)
     for part, other in ((one, two), (two, one)):
@@ -178,6 +180,23 @@ def test_a_seed_is_the_same_bytes_twice(folder: Path, tmp_path: Path) -> None:
     (again,) = write_scenes(tmp_path, SceneSet(2, 3.0, 1, 5, 3), SIZE)
     for name in ("cam1.avi", "cam3.avi", "meta.json", "truth.npz"):
         assert (again / name).read_bytes() == (folder / name).read_bytes()
+
+
+def test_each_may_be_shown_alone_too_with_the_same_motion_room_and_noise(tmp_path: Path) -> None:
+    scene, *each = write_scenes(tmp_path, SceneSet(2, 3.0, 1, 5, 3, alone=True), SIZE)
+    assert [one.name for one in each] == [f"{scene.name}_alone{who}" for who in (0, 1)]
+    with np.load(scene / "truth.npz") as truth:
+        for who, one in enumerate(each):
+            with np.load(one / "truth.npz") as own:
+                assert "person" not in own
+                rows = truth["person"] == who
+                for name in ("joints3d", "joints2d_cam2", "present", "phase"):
+                    np.testing.assert_array_equal(truth[name][rows], own[name])
+                both, whole = truth["mask_cam1"][rows], own["mask_cam1"]
+                assert (np.bitwise_and(both, ~whole) == 0).all(), "nobody hides more than nothing"
+                np.testing.assert_array_equal(truth["gain"], own["gain"])
+    films = [cv2.VideoCapture(str(at / "cam1.avi")).read()[1] for at in (scene, *each)]
+    np.testing.assert_array_equal(films[0], films[1])
 
 
 def test_one_person_alone_has_the_format_of_any_clip(tmp_path: Path) -> None:

@@ -207,7 +207,7 @@ def _box(pixels: Vector, rig: Rig) -> tuple[slice, slice]:
 
 def _light(scene: _Scene, i: int) -> list[NDArray[np.float32]]:
     """Light that arrives in each pixel of each camera, (h, w), 0 to 1, in frame i."""
-    there = [actor for actor in scene.cast if actor.present[i]]
+    there = [actor for actor in scene.cast if actor.present[i] and _inside(scene, actor, i)]
     if not there:
         return [np.ones((scene.rig.height, scene.rig.width), np.float32)] * len(scene.rig.cameras)
     soft = [
@@ -222,6 +222,12 @@ def _light(scene: _Scene, i: int) -> list[NDArray[np.float32]]:
         )
         found.append((1.0 - KEY_DARK * key) * (1.0 - FOOT_DARK * foot))
     return found
+
+
+def _inside(scene: _Scene, actor: Actor, i: int) -> bool:
+    """Whether a person casts shadows: those behind a solid wall do not."""
+    middle, room = actor.places[i].mean(axis=0), scene.room
+    return not scene.solid or bool((middle >= room.low).all() and (middle <= room.high).all())
 
 
 def _lamp_mask(there: list[Actor], i: int, lamp: Lamp, blur_px: int) -> NDArray[np.float32]:

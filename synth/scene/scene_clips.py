@@ -54,6 +54,9 @@ class SceneSet(NamedTuple):
     opening: bool = True
     """Whether they begin with the empty room and T-poses; False: people are there and move from
     the first frame."""
+    alone: bool = False
+    """Whether each person is also shown alone, in a clip of their own with the same motion, room
+    and noise: what tracking loses by the others is the difference."""
 
 
 def write_scenes(
@@ -87,28 +90,43 @@ def write_scenes(
         folders.append(out / f"people{wanted.people}_s{wanted.seed:02d}_t{take}")
         room_seed = wanted.seed * ROOM_SEED + take
         asked = SceneSeed(*wanted[:2], wanted.seed, take, room_seed, wanted.opening)
-        _write_scene(folders[-1], asked, rig)
+        made, filming = _made(asked, rig), Filming(rig, room_seed, take + 1000 * wanted.seed)
+        _write_scene(folders[-1], made, filming, take)
+        if wanted.alone:
+            folders += _write_each(folders[-1], made, filming, take)
         if progress is not None:
             progress(take, wanted.takes)
     return folders
 
 
-def _write_scene(folder: Path, wanted: SceneSeed, rig: Rig) -> None:
+def _made(asked: SceneSeed, rig: Rig) -> Scene:
     try:
-        made = scene(wanted, rig, FPS)
+        return scene(asked, rig, FPS)
     except ValueError as error:
         raise SynthError(str(error)) from error
+
+
+def _write_each(folder: Path, made: Scene, filming: Filming, take: int) -> list[Path]:
+    """Each person of a scene alone, beside it."""
+    folders = []
+    for number, part in enumerate(made.parts):
+        folders.append(folder.with_name(f"{folder.name}_alone{number}"))
+        _write_scene(folders[-1], Scene((part,), (), ()), filming, take)
+    return folders
+
+
+def _write_scene(folder: Path, made: Scene, filming: Filming, take: int) -> None:
+    rig, room_seed, seed, _ = filming
     folder.mkdir(parents=True, exist_ok=True)
-    filming = Filming(rig, wanted.room_seed, wanted.take + 1000 * wanted.seed)
-    shots = render_scene(made.parts, rig, wanted.room_seed, filming.seed, made.things)
+    shots = render_scene(made.parts, rig, room_seed, seed, made.things)
     masks = filmed(folder, shots, rig, FPS)
-    (folder / "meta.json").write_text(json.dumps(_meta(made, filming, wanted), indent=1) + "\n")
-    gain = exposures(len(rig.cameras), len(made.parts[0].motion.phase), filming.seed, FPS)
+    (folder / "meta.json").write_text(json.dumps(_meta(made, filming, take), indent=1) + "\n")
+    gain = exposures(len(rig.cameras), len(made.parts[0].motion.phase), seed, FPS)
     truths = []
     for number, (someone, motion) in enumerate(made.parts):
         own = {name: packed[:, number] for name, packed in masks.items()}
-        present = in_pictures(motion, rig, wanted.room_seed)
-        truths.append({**truth_of(someone, motion, rig, wanted.take), "present": present, **own})
+        present = in_pictures(motion, rig, room_seed)
+        truths.append({**truth_of(someone, motion, rig, take), "present": present, **own})
     np.savez_compressed(
         folder / "truth.npz", allow_pickle=False, **together(truths), gain=gain.astype(np.float32)
     )
@@ -153,9 +171,9 @@ def in_pictures(motion: Motion, rig: Rig, room_seed: int) -> NDArray[np.bool_]:
     return there & shown
 
 
-def _meta(made: Scene, filming: Filming, wanted: SceneSeed) -> dict[str, Any]:
+def _meta(made: Scene, filming: Filming, take: int) -> dict[str, Any]:
     """What describes a scene: of the clip, of each person, and who touches whom."""
-    each = [meta_of(*part, filming, wanted.take) for part in made.parts]
+    each = [meta_of(*part, filming, take) for part in made.parts]
     of_all = {
         name: each[0][name] for name in ("posture", "take", "room", "fps", "n_frames", "seed")
     }

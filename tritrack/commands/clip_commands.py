@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 
 import typer
 
-from common.config.part_settings import BusSettings, SettingsError
+from common.config.part_settings import BusSettings
 from common.config.settings import Settings
 from runtime.faults import refuse_unfollowed
 from runtime.store.run_exports import OWN_NAMES, Format
@@ -25,6 +25,7 @@ from tritrack.commands.options import (
     Size,
     Views,
     numbers_given,
+    refuse_given,
     size_given,
     writable,
     writable_file,
@@ -103,6 +104,7 @@ def synth(
     ] = None,
     seconds: Annotated[float | None, typer.Option(help="How long a scene of --people is.")] = None,
     opening: Annotated[bool, typer.Option(help="A scene begins with an empty room.")] = True,
+    alone: Annotated[bool, typer.Option("--alone", help="Each of a scene alone, too.")] = False,
     takes: Annotated[int, typer.Option(min=1, max=100, help="Takes of each, or scenes.")] = 1,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the first performer.")] = 0,
     size: Annotated[
@@ -130,25 +132,18 @@ def synth(
 
     wanted: ClipSet | SceneSet
     if people is None:
-        scenes = (("--seconds", seconds), ("--no-opening", None if opening else True))
-        _refuse(*scenes, because="needs --people: other clips have their own")
+        scenes = {"--seconds": seconds, "--alone": alone, "--no-opening": not opening}
+        refuse_given(scenes, because="needs --people: other clips have their own")
         some = (motion or "postures", performers or 1, takes, seed, tuple(posture or ()), cameras)
         wanted = ClipSet(*some, moving=bool(moving))
     else:
-        alone = {"--motion": motion, "--posture": posture, "--performers": performers}
-        alone |= {"--moving": moving}
-        _refuse(*alone.items(), because="is of clips of one person: leave it or --people out")
-        wanted = SceneSet(people, seconds or SCENE_S, takes, seed, cameras, opening)
+        single = {"--motion": motion, "--posture": posture, "--performers": performers}
+        single |= {"--moving": moving}
+        refuse_given(single, because="is of clips of one person: leave it or --people out")
+        wanted = SceneSet(people, seconds or SCENE_S, takes, seed, cameras, opening, alone)
     made = make_clips(out, wanted, size, console)
     facts = {"clips": [str(folder) for folder in made]}
     tell(facts, json_wanted, f"{counted(len(made), 'clip')} written to {out}")
-
-
-def _refuse(*options: tuple[str, object], because: str) -> None:
-    """An error for the first option that was given."""
-    given = [name for name, value in options if value is not None]
-    if given:
-        raise SettingsError(f"{given[0]} {because}")
 
 
 def single(

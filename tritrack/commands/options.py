@@ -1,6 +1,6 @@
 """Arguments and options that several commands share."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Annotated, Final, Literal
@@ -9,7 +9,7 @@ import typer
 
 from common.atomic_file import refuse_special
 from common.bus.messages import MOST_VIEWS, ViewerNumber
-from common.config.part_settings import MOST_OFFSET_S
+from common.config.part_settings import MOST_OFFSET_S, SettingsError
 from common.config.picture_size import size_of
 
 MODES: Final = "default: most accurate; paper: as published 2004"
@@ -171,3 +171,18 @@ Size = Annotated[
     str | None,
     typer.Option(help=f"{WORKED_ON} Else the settings' size.", callback=size_given),
 ]
+
+
+def refuse_given(options: Mapping[str, object], because: str) -> None:
+    """Refuse the first option that has a value.
+
+    Args:
+        options: Values by name; None or False where it was not given.
+        because: What the line says after the option's name.
+
+    Raises:
+        SettingsError: Where one has.
+    """
+    given = [name for name, value in options.items() if value is not None and value is not False]
+    if given:
+        raise SettingsError(f"{given[0]} {because}")
