@@ -97,6 +97,8 @@ def test_scenes_are_made_as_they_are_asked_for(monkeypatch: pytest.MonkeyPatch) 
     typed(synth, "--out", "x", *words, "--no-opening", "--alone")
     wanted = SceneSet(2, 8.0, 4, 7, 3, opening=False, alone=True)
     assert made.last[:3] == (Path("x"), wanted, "320x240")
+    typed(synth, "--out", "x", "--people", 1, "--seconds", 0)
+    assert made.last[1].lasts_s == 0.0, "refused later, not taken for none"
     typed(synth, "--out", "x", "--people", 1)
     assert made.last[1] == SceneSet(1, 10.0, 1, 0, 2, opening=True)
 

@@ -140,7 +140,8 @@ def synth(
         single = {"--motion": motion, "--posture": posture, "--performers": performers}
         single |= {"--moving": moving}
         refuse_given(single, because="is of clips of one person: leave it or --people out")
-        wanted = SceneSet(people, seconds or SCENE_S, takes, seed, cameras, opening, alone)
+        lasts_s = SCENE_S if seconds is None else seconds
+        wanted = SceneSet(people, lasts_s, takes, seed, cameras, opening, alone)
     made = make_clips(out, wanted, size, console)
     facts = {"clips": [str(folder) for folder in made]}
     tell(facts, json_wanted, f"{counted(len(made), 'clip')} written to {out}")
