@@ -80,14 +80,14 @@ class Alone:
         first, second = undistorted_rig(rig).cameras
         self.cameras, self.bodies = (first, second), list[Body]()
 
-    def watch(self, _: object, reports: dict[int, View], body: Body) -> None:
+    def watch(self, _: object, reports: dict[int, View], bodies: tuple[Body, ...]) -> None:
         """One instant."""
         first, second = (_landmarks(reports.get(n)) for n in (1, 2))
         joints: tuple[Any, ...] = ()
         if first is not None and second is not None:
             pairs = zip(first.joints_px, second.joints_px, strict=True)
             joints = tuple(tuple(triangulate(self.cameras, pair).tolist()) for pair in pairs)
-        self.bodies.append(msgspec.structs.replace(body, joints_m=joints))
+        self.bodies.append(msgspec.structs.replace(bodies[0], joints_m=joints))
 
 
 def followed(clips: Sequence[Path], source: str, size: str | None) -> dict[str, list[Compared]]:

@@ -53,9 +53,9 @@ def performance() -> list[Seen]:
     with tempfile.TemporaryDirectory() as folder, Decoders() as decoders:
         (clip,) = write_set(Path(folder), ClipSet("postures", seed=SEED, postures=(POSTURE,)), SIZE)
 
-        def watch(frames: Any, reports: Any, body: Body) -> None:
+        def watch(frames: Any, reports: Any, bodies: tuple[Body, ...]) -> None:
             pictures = {n: frame.picture for n, frame in frames.items()}
-            seen.append(Seen(pictures, dict(reports), body))
+            seen.append(Seen(pictures, dict(reports), bodies[0]))
 
         track_clip(Settings(clip=str(clip), size="320x240"), decoders, watch=Watch(watch))
     return seen

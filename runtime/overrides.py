@@ -1,6 +1,7 @@
 """Settings on the command line, which override those of a file."""
 
 from pathlib import Path
+from typing import Literal
 
 import msgspec
 
@@ -16,6 +17,7 @@ def overridden(
     landmarks: str | None = None,
     offset_s: float | None = None,
     background: str | None = None,
+    people: Literal["1", "all"] | None = None,
 ) -> Settings:
     """The settings with the command line's values; None keeps a setting.
 
@@ -31,6 +33,7 @@ def overridden(
             landmarks=settings.landmarks if landmarks is None else landmarks,
             silhouette=_silhouette(settings, background),
             offset_s=settings.offset_s if offset_s is None else offset_s,
+            people=settings.people if people is None else (1 if people == "1" else "all"),
         )
     except ValueError as error:
         raise SettingsError(str(error)) from error

@@ -99,10 +99,10 @@ class Tracker:
         bodies = [one for one in self.said if isinstance(one, Body)]
         reports = [one for one in self.said if isinstance(one, View)]
         if watch and self.said:
-            watch.each({}, {2: reports[0], 1: reports[0]}, bodies[0])
+            watch.each({}, {2: reports[0], 1: reports[0]}, (bodies[0],))
             watch.begin()
             for body, one in zip(bodies, reports, strict=True):
-                watch.each({}, {1: one}, body)
+                watch.each({}, {1: one}, (body,))
         return Tracked(CLIP, bodies, dict(self.facts))
 
 

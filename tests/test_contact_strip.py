@@ -41,7 +41,7 @@ def test_frames_differ_and_limbs_are_drawn_in_each(strip: np.ndarray) -> None:
 def instants_of(*statuses: str) -> list[Any]:
     """What a tracker would pass on, each told by its number."""
     return [
-        (dict.fromkeys((1, 2), number), {}, SimpleNamespace(status=status, number=number))
+        (dict.fromkeys((1, 2), number), {}, (SimpleNamespace(status=status, number=number),))
         for number, status in enumerate(statuses)
     ]
 
@@ -63,7 +63,7 @@ def chosen(monkeypatch: pytest.MonkeyPatch, statuses: list[str], window: int) ->
     shown: dict[int, list[int]] = {1: [], 2: []}
 
     def showing(now: Any, number: int, rig: Any) -> Any:
-        shown[number].append(now[2].number)
+        shown[number].append(now[2][0].number)
         return np.full((3, 4, 3), (10 * number, 20, 30), np.uint8)
 
     monkeypatch.setattr(module, "overridden", lambda *_: settings)
@@ -105,14 +105,14 @@ def test_a_view_without_a_frame_is_black_and_limbs_are_drawn_where_a_rig_is_know
     monkeypatch.setattr(module, "draw_contours", lambda image, *given: drawn.append(given))
     frame, report = SimpleNamespace(picture=picture), SimpleNamespace(width=80)
     rig: Any = SimpleNamespace(cameras=("first", "second"))
-    both: Any = ({1: frame, 2: frame}, {1: report, 2: report}, "body")
+    both: Any = ({1: frame, 2: frame}, {1: report, 2: report}, ("body",))
     image = module._shown(both, 2, rig)
     assert image.shape == (240, WIDTH_PX, 3)
     assert (image == 0x50).all(), "small differences of colour are left out"
     assert drawn == [(("second", "body"), 80)]
-    alone: Any = ({1: frame}, {1: report}, "body")
+    alone: Any = ({1: frame}, {1: report}, ("body",))
     assert not module._shown(alone, 2, rig).any()
     module._shown(both, 1, None)
-    nobody: Any = ({1: frame}, {1: report}, None)
+    nobody: Any = ({1: frame}, {1: report}, (None,))
     module._shown(nobody, 1, rig)
     assert len(drawn) == 1

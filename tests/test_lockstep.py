@@ -25,6 +25,7 @@ from common.video.clip_facts import Act, Clip, ClipView, Meta
 from common.video.clip_sources import ClipError
 from common.video.pictures import Ending
 from integrator import diagnostics, merge_state
+from integrator.people import several
 from lab.accuracy.accuracy import compare
 from runtime.offline import lockstep
 from runtime.offline.batch import Asked, track_all
@@ -33,7 +34,11 @@ from runtime.offline.performance import Performance, Prepared, Watch
 from runtime.offline.rig_check import Witness
 from runtime.offline.rig_from_person import Looked
 from runtime.overrides import overridden
-from runtime.steps.method_cameras import refuse_too_many, refuse_uncalibrated
+from runtime.steps.method_cameras import (
+    refuse_everyone_unmeasured,
+    refuse_too_many,
+    refuse_uncalibrated,
+)
 from runtime.store.past_run import open_run
 from runtime.store.pose_arrays import poses
 from runtime.store.runs import NO_PERSON_SEEN
@@ -216,7 +221,7 @@ def ready_made(clip: Clip = PAIR) -> Prepared:
     frame_caches: Any = {
         view.number: SimpleNamespace(ending=endings[view.number]) for view in clip.views
     }
-    return Prepared(clip, frame_caches, {}, state, ["nothing moves"], 2.34567)
+    return Prepared(clip, frame_caches, {}, several.State(state), ["nothing moves"], 2.34567)
 
 
 def performed_so(*bodies: Body) -> Performance:
@@ -224,7 +229,7 @@ def performed_so(*bodies: Body) -> Performance:
     state = state._replace(scale_source="person")
     seconds = {"viewers": 3.00004, "integrator": 1.0, "following": 4.0}
     noticed = diagnostics.State()
-    return Performance(bodies, state, noticed, ("a new rig",), seconds)
+    return Performance(bodies, several.State(state), noticed, ("a new rig",), seconds)
 
 
 def seen_body(frame: int = 0) -> Body:
@@ -501,3 +506,13 @@ def test_three_cameras_are_for_the_default_mode_and_a_calibration(
 def _refuse(clip: Clip, mode: Mode) -> None:
     refuse_too_many(clip, METHODS[mode])
     refuse_uncalibrated(clip, "it rained")
+
+
+def test_everyone_is_followed_where_a_calibration_says_who_is_where() -> None:
+    clip = Clip("two", VIEWS, 1, RIG, Meta())
+    uncalibrated = msgspec.structs.replace(clip, rig=None)
+    everyone = Settings(people="all")
+    refuse_everyone_unmeasured(clip, everyone)
+    refuse_everyone_unmeasured(uncalibrated, Settings())
+    with pytest.raises(ClipError, match=r"^two: to follow everyone takes a calibration: make one"):
+        refuse_everyone_unmeasured(uncalibrated, everyone)

@@ -8,15 +8,19 @@ from crowds import Crowd, crowd, whole_people
 from test_own_landmarks import seen
 
 from common.body.observation import Landmarks, Observation
+from common.config.part_settings import SilhouetteSettings
 from common.config.settings import Settings
+from common.method import DEFAULT
 from common.raster.silhouette_report import unpack
 from common.raster.similarity import Mask
+from viewer.background.background import learn
 from viewer.captured_frame import CapturedFrame
 from viewer.landmark_step import State, step
 from viewer.landmarks.landmark_window import Window
 from viewer.landmarks.person_mask import LandmarkResult, PersonMask, Shown, likeliest
-from viewer.people.observed_people import observed
+from viewer.people.observed_people import everyone, observed
 from viewer.room.silhouette_correction import corrected
+from viewer.silhouette import silhouette as silhouettes
 from viewer.silhouette.silhouette import Seen
 
 PERSON = Landmarks(((1.0, 2.0),) * 15, (0.9,) * 15)
@@ -102,6 +106,49 @@ def test_of_a_region_that_holds_two_people_the_silhouette_is_the_followed_ones()
     assert held.things is None
     apart = corrected(silhouette(4, 18), result(4, 20, 1.0), 0.15, [other])
     assert not apart.is_changed
+
+
+EMPTY = np.full((*SHAPE, 3), 90, np.uint8)
+
+
+def two_at(first: tuple[int, int], second: tuple[int, int]) -> tuple[Observation, ...]:
+    """Everyone in a picture of a room in which two people stand in some columns; the network sees
+    each a column narrower at both sides."""
+    picture = EMPTY.copy()
+    picture[4:44, slice(*first)] = (10, 10, 200)
+    picture[4:44, slice(*second)] = (200, 10, 10)
+    room = silhouettes.init(learn([EMPTY]), SilhouetteSettings(), DEFAULT)
+    looks = [result(left + 1, right - 1) for left, right in (first, second)]
+    near = [((sum(ends) / 2, 24.0),) * 15 for ends in (first, second)]
+    looks = [
+        look._replace(landmarks=Landmarks(px, (0.9,) * 15))
+        for look, px in zip(looks, near, strict=True)
+    ]
+    shown = Shown(looks[0], 3, ((5, looks[1]),))
+    return everyone(room, picture, silhouette(*first), shown, 0.15)
+
+
+def test_of_everyone_each_has_the_silhouette_that_the_background_shows() -> None:
+    first, second = two_at((3, 18), (26, 46))
+    assert [each.track for each in (first, second)] == [3, 5]
+    assert [columns(unpack(each)) for each in (first, second)] == [(3, 18), (26, 46)]
+    assert first.colours[1] > 40.0, "red"
+    assert second.colours[2] < -40.0, "blue"
+
+
+def test_who_stands_beside_another_has_none_of_their_pixels() -> None:
+    _, second = two_at((3, 22), (22, 42))
+    left, right = columns(unpack(second))
+    assert abs(left - 22) <= 2
+    assert right in {41, 42}, "all of their own, but a border in doubt"
+
+
+def test_of_everyone_those_without_landmarks_are_left_out_and_the_others_stay() -> None:
+    room = silhouettes.init(learn([EMPTY]), SilhouetteSettings(), DEFAULT)
+    shown = Shown(LandmarkResult(None), 3, ((5, result(16, 30)),))
+    found = everyone(room, EMPTY, silhouette(4, 14), shown, 0.15)
+    assert [each.track for each in found] == [5]
+    assert everyone(room, EMPTY, silhouette(4, 14), Shown(LandmarkResult(None)), 0.15) == ()
 
 
 @lru_cache(maxsize=1)

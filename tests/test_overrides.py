@@ -51,6 +51,21 @@ def test_without_a_background_and_without_landmarks_no_person_can_be_seen(
         overridden(Settings(), mode, None, landmarks, background="none")
 
 
+def test_everyone_or_one_person_is_followed() -> None:
+    everyone = overridden(Settings(), None, None, people="all")
+    assert everyone.people == "all"
+    assert overridden(everyone, None, None).people == "all"
+    assert overridden(everyone, None, None, people="1").people == 1
+
+
+@pytest.mark.parametrize(
+    ("mode", "landmarks"), [("paper", "own"), ("default", "none"), ("default", "mediapipe")]
+)
+def test_everyone_is_followed_by_landmarks_of_ours_alone(mode: Mode, landmarks: str) -> None:
+    with pytest.raises(SettingsError, match="needs mode default and a landmark network of ours"):
+        overridden(Settings(), mode, None, landmarks, people="all")
+
+
 @pytest.mark.parametrize("named", ["README.md", "nope", "nope.onnx"])
 def test_landmarks_that_are_not_there_are_told_as_that(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, named: str

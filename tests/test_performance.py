@@ -17,6 +17,7 @@ from common.config.settings import Settings
 from common.method import DEFAULT, Mode
 from common.video.clip_facts import Clip, ClipView, Meta
 from integrator import merge_state
+from integrator.people import several
 from runtime.offline import performance
 from runtime.offline.lockstep import Decoders, track_clip
 from runtime.offline.performance import STAGE, LockstepState, Prepared, Watch, performed
@@ -132,7 +133,7 @@ def prepared() -> Prepared:
     views = tuple(ClipView(n, f"cam{n}.avi", (160, 120), (160, 120), 15.0, FRAMES) for n in VIEWS)
     clip = Clip("made up", views, 1, RIG, Meta())
     state = merge_state.init(RIG, PERIOD_S, Settings(), DEFAULT)
-    return Prepared(clip, {}, {1: 100, 2: 200}, state, [], 0.0)  # type: ignore[dict-item]
+    return Prepared(clip, {}, {1: 100, 2: 200}, several.State(state), [], 0.0)  # type: ignore[dict-item]
 
 
 @pytest.fixture
@@ -145,7 +146,7 @@ def guided(monkeypatch: pytest.MonkeyPatch) -> list[tuple[int, int | None]]:
         seen = report(state // 100, frame=frame.index, captured_s=frame.captured_s)
         return state + 1, seen
 
-    def merged(state: Any, pair: Instant) -> tuple[Any, Body, Guide]:
+    def merged(state: Any, pair: Instant, _: object) -> tuple[Any, Body, Guide]:
         assert [one and one.viewer for one in pair.views] == [1, 2]
         n, moment = pair.newest.frame, dict[str, Any](captured_s=0.0, clock_s=0.0)
         moved = (1,) if n == MOVED_AT else ()
@@ -168,7 +169,7 @@ def test_each_view_goes_on_from_its_own_state_by_the_guide_of_the_instant_before
     told: list[float] = []
     shown: list[int] = []
     course = Course(told.append)
-    watch = Watch(lambda *of: shown.append(of[2].frame))
+    watch = Watch(lambda *of: shown.append(of[2][0].frame))
     done = performed(prepared(), {}, Witness(), watch, course)
     assert sorted(guided[:4]) == [(100, None), (101, 0), (200, None), (201, 0)]
     assert [body.frame for body in done.bodies] == shown == [0, 1, 2, 3]

@@ -2,9 +2,11 @@
 
 import math
 from collections.abc import Sequence
-from itertools import permutations
 from operator import itemgetter
 from typing import Final, NamedTuple
+
+import cv2
+import numpy as np
 
 from common.body.observation import Landmarks, Pixel
 from common.config.settings import Settings
@@ -22,9 +24,11 @@ from viewer.landmarks.own_landmarks import (
 )
 from viewer.landmarks.person_mask import LandmarkResult, Shown
 from viewer.people import known_people
+from viewer.people.close_people import are_close, beside, cheapest, told_apart, without
 from viewer.people.known_people import PEOPLE, Look, People, corners_of, is_person
 from viewer.people.people_detector import Detection, overlap, people_in
-from viewer.silhouette.silhouette import Seen
+from viewer.room.body_region import Bytes
+from viewer.silhouette.silhouette import Seen, seen_of
 
 SEARCH_S: Final = 0.5
 """Time between two searches of the whole picture for people, in seconds, beside the looks at known
@@ -88,13 +92,17 @@ def step(
     state = searched(state)
     people = known_people.expected_at(state.people, root_px)
     model = LandmarkModel(network_of(settings.landmarks), alone and not frame.hurried)
-    looks, new = _looks(frame.picture, seen, people, model), list[LandmarkResult]()
+    if not frame.hurried and are_close(people):
+        looks, new = told_apart(frame.picture, people, model)
+        state = state._replace(searched_s=frame.captured_s)
+    else:
+        looks, new = _looks(frame.picture, seen, people, model), list[LandmarkResult]()
+        state = _due(state, frame, _interval_s(people, looks[people.followed], seen))
+        if not people.tracks:
+            state = searched(state)
+        if state.detected is not None:
+            looks, new = _looked_again(frame.picture, looks, people, model, state.detected)
     followed = looks[people.followed]
-    state = _due(state, frame, _interval_s(people, followed, seen))
-    if not people.tracks:
-        state = searched(state)
-    if state.detected is not None:
-        looks, new = _looked_again(frame.picture, looks, people, model, state.detected)
     after, shown = _identified(people, frame.captured_s, looks, new)
     if not shown and not is_person(followed.landmarks):
         shown = {after.followed: followed}
@@ -124,16 +132,28 @@ def _looks(
 ) -> dict[int, LandmarkResult]:
     """What the network sees where the people who are known were, by their numbers."""
     others = people.others
+    known = {track.number: track.landmarks for track in people.tracks}
+    own = known_people.last(people)
+    theirs = None if own is None else beside(picture, people.followed, known)
     looks = {
         people.followed: own_landmarks(
-            picture, seen, known_people.last(people), model, crowded=bool(others)
+            without(picture, theirs), _less(seen, theirs), own, model, crowded=bool(others)
         )
     }
     for track in others:
         window = window_of_joints(track.landmarks)
         if window is not None:
-            looks[track.number] = look_in(picture, window, _once(model))
+            alone = without(picture, beside(picture, track.number, known))
+            looks[track.number] = look_in(alone, window, _once(model))
     return looks
+
+
+def _less(seen: Seen, theirs: Bytes | None) -> Seen:
+    """A silhouette without others' pixels."""
+    if theirs is None or seen.box is None:
+        return seen
+    mask = np.asarray(cv2.subtract(seen.mask.view(np.uint8), theirs))
+    return seen_of(mask, seen.blobs, 0.0)
 
 
 def _looked_again(
@@ -147,13 +167,16 @@ def _looked_again(
     at people who are detected and not known."""
     owners = _owners(detected, people, looks[people.followed])
     looks, new = dict(looks), list[LandmarkResult]()
-    for detection, number in zip(detected, owners, strict=True):
+    places = {place: each.landmarks for place, each in enumerate(detected)}
+    for place, (detection, number) in enumerate(zip(detected, owners, strict=True)):
         own = model if number in {None, people.followed} else _once(model)
+        look = None if number is None else looks.get(number)
+        theirs = beside(picture, place, places)
         if number is None and len(new) < PEOPLE:
-            new.append(look_in(picture, detection.window, own))
-        elif number is not None and not _is_sure_at(looks.get(number), detection.window):
-            again = look_in(picture, detection.window, own)
-            looks[number] = _better(looks.get(number, again), again, detection)
+            new.append(look_in(without(picture, theirs), detection.window, own))
+        elif number is not None and not _is_sure_at(look, detection.window):
+            again = look_in(without(picture, theirs), detection.window, own)
+            looks[number] = again if look is None else _better(look, again, detection)
     return looks, new
 
 
@@ -164,20 +187,11 @@ def _owners(
     places = {track.number: corners_of(track.landmarks) for track in people.tracks}
     if not places and is_person(followed.landmarks):
         places = {people.followed: corners_of(followed.landmarks)}
-    width = max(len(detected), len(places))
-    shares = [
-        [overlap(each.corners_px, place) for each in detected] + [0.0] * (width - len(detected))
-        for place in places.values()
+    costs = [
+        [1.0 - overlap(each.corners_px, place) for place in places.values()] for each in detected
     ]
-    chosen = max(  # of few people: scipy's assignment would cost a quarter of a second to import
-        permutations(range(width), len(places)),
-        key=lambda columns: sum(of[column] for of, column in zip(shares, columns, strict=True)),
-    )
-    owners: list[int | None] = [None] * width
-    for number, of_place, column in zip(places, shares, chosen, strict=True):
-        if of_place[column] >= IS_OF:
-            owners[column] = number
-    return owners[: len(detected)]
+    numbers = list(places)
+    return [None if n is None else numbers[n] for n in cheapest(costs, 1.0 - IS_OF)]
 
 
 def _is_sure_at(look: LandmarkResult | None, window: Window) -> bool:
@@ -219,8 +233,9 @@ def _shown(people: People, shown: dict[int, LandmarkResult]) -> Shown:
 
 def _interval_s(people: People, followed: LandmarkResult, seen: Seen) -> float:
     """Time from the last search of the whole picture to the next: short where the followed person
-    is not surely seen, or any was out of sight; none where a silhouette is of no known person."""
-    if not people.tracks and seen.box is not None and followed.surety < SURE:
+    is not surely seen, or any was out of sight; none where a silhouette is of no known person, of
+    whom there may be several."""
+    if not people.tracks and seen.box is not None:
         return 0.0
     return SEARCH_S if people.are_seen and followed.surety >= SURE else URGENT_S
 

@@ -25,7 +25,7 @@ from viewer.landmarks.person_mask import LandmarkResult, Shown
 from viewer.paper import pose_search
 from viewer.paper.measure import opening_measure
 from viewer.people.known_people import forgotten, of_one
-from viewer.people.observed_people import observed
+from viewer.people.observed_people import everyone, observed
 from viewer.room.silhouette_correction import corrected, is_trusted
 from viewer.silhouette import silhouette
 from viewer.silhouette.silhouette import Seen
@@ -171,7 +171,11 @@ def look(state: State, frame: CapturedFrame, guide: Guide | None) -> tuple[State
             remembered, state.silhouette, frame.picture, held.things
         )
     seen = held.seen
-    view = _view_of(setup.viewer, frame, seen, observed(seen, shown, least_share))
+    if setup.settings.people == 1:
+        people = observed(seen, shown, least_share)
+    else:
+        people = everyone(remembered, frame.picture, seen, shown, least_share)
+    view = _view_of(setup.viewer, frame, seen, people)
     if state.moved is not None:
         view = msgspec.structs.replace(view, shift=state.moved.shift)
     state = state._replace(silhouette=remembered, near_px=_middle_px(seen.box), landmarks=known)

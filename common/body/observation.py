@@ -111,6 +111,9 @@ class Observation(
     """The silhouette touches the picture's border: the person is partly outside."""
     landmarks: Landmarks | None = None
     """None where the source of landmarks sees no person here, or there is none."""
+    colours: tuple[float, ...] = ()
+    """Mean L*a*b* of the clothes of the upper body, then of the legs; empty where one person is
+    followed."""
     vote: Facing = "facade"
     """What this view alone takes itself for: facade or flank (P26)."""
     upper_body_px: float = 0.0

@@ -1,7 +1,7 @@
 """The settings of one run: one frozen value, with all defaults."""
 
 import re
-from typing import Final
+from typing import Final, Literal
 
 import msgspec
 
@@ -48,6 +48,8 @@ class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Source of the landmarks: the network in the package ("own"), no source ("none"),
     "mediapipe", another network (a file that `tritrack train --what landmarks` wrote), or a
     folder of keypoint files."""
+    people: Literal[1, "all"] = 1
+    """1: one person is followed; "all": everyone in view, each with a number."""
     every: int = 1
     """Process every n-th frame of a recorded clip."""
     fps: float = 0.0
@@ -92,6 +94,11 @@ class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
             )
         if self.silhouette.background == "none":
             self._refuse_no_sight()
+        if self.people == "all" and not (self.looks_itself and METHODS[self.mode].landmarks):
+            raise ValueError(
+                'people = "all" needs mode default and a landmark network of ours: leave mode '
+                "and landmarks out, or follow one person"
+            )
         within("every", self.every, 1, 1000)
         within("fps", self.fps, 0.0, 1000.0)
         within("offset_s", self.offset_s or 0.0, -MOST_OFFSET_S, MOST_OFFSET_S)

@@ -28,8 +28,8 @@ LEVELS: Final = 0xF0
 """Mask of the bits of a colour that are kept: with their noise a page of strips would have 12
 MB."""
 
-Instant = tuple[dict[ViewerNumber, CapturedFrame], dict[int, View], Body]
-"""Frames, reports and body of one instant."""
+Instant = tuple[dict[ViewerNumber, CapturedFrame], dict[int, View], tuple[Body, ...]]
+"""Frames, reports and bodies of one instant."""
 
 
 def contact_strip(path: Path, mode: Mode | None, decoders: Decoders) -> bytes:
@@ -49,7 +49,7 @@ def contact_strip(path: Path, mode: Mode | None, decoders: Decoders) -> bytes:
     tracked = track_clip(
         settings, decoders, watch=Watch(lambda *now: instants.append(now), instants.clear)
     )
-    moving = [now for now in instants if now[2].status in MOVING] or instants
+    moving = [now for now in instants if now[2][0].status in MOVING] or instants
     moving = moving[-settings.recognizer.window_frames :]
     chosen = [moving[i] for i in np.linspace(0, len(moving) - 1, SHOWN).round().astype(int)]
     rig, numbers = whole_rig(tracked.clip), [view.number for view in tracked.clip.views]
@@ -60,7 +60,7 @@ def contact_strip(path: Path, mode: Mode | None, decoders: Decoders) -> bytes:
 
 def _shown(now: Instant, number: ViewerNumber, rig: Rig | None) -> Image:
     """One view of one instant; black where that camera has no frame then."""
-    frames, reports, body = now
+    frames, reports, (body, *_) = now
     if number not in frames:
         any_picture = next(iter(frames.values())).picture
         return _fitted(np.zeros_like(any_picture))

@@ -9,7 +9,11 @@ from common.config.settings import Settings
 from common.method import METHODS
 from common.video.clip_facts import Clip, whole_rig
 from runtime.live.free_ports import own_session, refuse_held_ports, with_free_endpoint
-from runtime.steps.method_cameras import refuse_too_many, refuse_uncalibrated
+from runtime.steps.method_cameras import (
+    refuse_everyone_unmeasured,
+    refuse_too_many,
+    refuse_uncalibrated,
+)
 from runtime.store.recording import refuse_without_library
 
 NO_POSTURE: Final = -1
@@ -59,6 +63,7 @@ def opened(settings: Settings, name: str) -> Clip:
     clip = open_clip(settings)
     refuse_too_many(clip, METHODS[settings.mode])
     refuse_uncalibrated(clip)
+    refuse_everyone_unmeasured(clip, settings)
     clip = msgspec.structs.replace(
         clip,
         name=name or clip.name,

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Final, NamedTuple
+from typing import Final, Literal, NamedTuple
 
 import msgspec
 from rich.console import Console
@@ -55,6 +55,8 @@ class Asked(NamedTuple):
     """Delay of camera 2."""
     background: str | None = None
     """"none": work without a model of the background."""
+    people: Literal["1", "all"] | None = None
+    """"all": follow everyone in view."""
 
 
 def track_all(paths: Sequence[Path], out: Path, given: Asked, console: Console) -> Facts:
@@ -85,7 +87,7 @@ def track_all(paths: Sequence[Path], out: Path, given: Asked, console: Console) 
                 own = config_file.load(path)
                 refuse_no_source(own, path)
                 named = given.mode, given.size, given.landmarks, given.offset_s, given.background
-                settings = overridden(own, *named)
+                settings = overridden(own, *named, given.people)
                 if given.trusted:
                     settings = msgspec.structs.replace(settings, trust_calibration=True)
                 told = {"the views": given.views, "what is recorded": given.record}
@@ -161,8 +163,8 @@ def head_of(
 def _recorder(heard: Kept) -> Watch:
     """Writes the messages of every instant, in the order in which a live run sends them."""
 
-    def each(_frames: object, reports: dict[int, View], body: Body) -> None:
-        for message in (*reports.values(), body):
+    def each(_frames: object, reports: dict[int, View], bodies: tuple[Body, ...]) -> None:
+        for message in (*reports.values(), *bodies):
             heard.append(message)
 
     return Watch(each, heard.clear)

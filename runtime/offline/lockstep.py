@@ -31,6 +31,7 @@ from integrator import diagnostics, merge_state
 from integrator.frame_numbers import frame_times
 from integrator.measuring import opening_posture
 from integrator.merge_state import Start
+from integrator.people import several
 from runtime.moved_facts import moved_facts
 from runtime.offline.frame_pairs import openings
 from runtime.offline.opening_clip import body_of
@@ -53,7 +54,11 @@ from runtime.offline.rig_check import (
 )
 from runtime.offline.rig_from_person import Looked, by_person, calibration_facts
 from runtime.offline.video_tracking import Heard, VideoInput, follow_clip, unseen
-from runtime.steps.method_cameras import refuse_too_many, refuse_uncalibrated
+from runtime.steps.method_cameras import (
+    refuse_everyone_unmeasured,
+    refuse_too_many,
+    refuse_uncalibrated,
+)
 from runtime.steps.together import viewer_of
 from runtime.unfinished.work import Course
 from viewer import track
@@ -137,11 +142,13 @@ def track_clip(
     alone = len(clip.views) == 1
     refuse_too_many(clip, method)
     if alone and (method.stick_lifting or (method.proposals and clip.rig is None)):
+        refuse_everyone_unmeasured(clip, settings)
         return _in_two_passes(clip, settings, method, decoders, course)
     with outside_sources(settings, clip.views) as sources:
         job = _Job(settings, method, decoders, sources, watch, course)
         looked = _as_left(by_person(clip, settings, method, decoders.of, sources), course)
         refuse_uncalibrated(looked.clip, looked.warning)
+        refuse_everyone_unmeasured(looked.clip, settings)
         followed = _followed(looked, job, began)
         clocks = clocks_seen(looked.clip, followed.witness)
         late_s = late_by(looked.clip, clocks, offsets_of(settings))
@@ -187,7 +194,7 @@ def _told(looked: Looked, job: _Job, followed: _Followed, clocks: Clocks) -> Tra
         witness,
         clocks,
         insisted=settings.trust_calibration,
-        different_people=any(done.integrator.same.left_out),
+        different_people=any(done.integrator.room.same.left_out),
     )
     facts = _facts(ready, done, job.sources) | calibration_facts(looked) | trust
     given = offsets_of(settings)
@@ -232,7 +239,9 @@ def _prepared(
     source: ScaleSource | None = "person" if looked.found else None
     start = Start(alone, source, opening, frame_times(clip), uprights=uprights_of(clip))
     integrator = merge_state.init(rig, period_s, settings, method, start)
-    return Prepared(clip, frame_caches, viewers, integrator, odd, time.perf_counter() - began)
+    return Prepared(
+        clip, frame_caches, viewers, several.State(integrator), odd, time.perf_counter() - began
+    )
 
 
 def _facts(ready: Prepared, done: Performance, sources: Sources) -> Facts:
@@ -250,8 +259,8 @@ def _facts(ready: Prepared, done: Performance, sources: Sources) -> Facts:
         **unread_facts(endings),
         "seconds": {name: round(value, 4) for name, value in seconds.items()},
         "frames_a_second": round(len(done.bodies) / followed_s, 1),
-        "scale_source": done.integrator.scale_source,
-        "warnings": [*odd, *diagnostics.warnings(done.noticed, done.integrator), *done.news],
+        "scale_source": done.integrator.room.scale_source,
+        "warnings": [*odd, *diagnostics.warnings(done.noticed, done.integrator.room), *done.news],
     }
 
 

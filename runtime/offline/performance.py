@@ -11,9 +11,11 @@ from common.bus.instant import instant_of
 from common.bus.messages import Body, Guide, View, ViewerNumber
 from common.video.clip_facts import Clip
 from common.video.frame_cache import FrameCache
-from integrator import diagnostics, merge_state
+from integrator import diagnostics
 from integrator.live_rig.live_calibration import LiveCalibration, Looking
 from integrator.live_rig.rig_solver import SolverAtOnce
+from integrator.people import several
+from integrator.people.several import Merged
 from runtime.offline.frame_pairs import instants, share_of
 from runtime.offline.rig_check import Seen, Witness
 from runtime.steps.together import joined, looked
@@ -28,8 +30,8 @@ TURNS_S: Final = 0.0002
 """Python's thread switch interval, seconds: with its default of 5 ms two viewers in parallel
 would be no faster than one after the other."""
 
-Each = Callable[[dict[ViewerNumber, CapturedFrame], dict[int, View], Body], object]
-"""Receives the frames of an instant, their reports and the body."""
+Each = Callable[[dict[ViewerNumber, CapturedFrame], dict[int, View], tuple[Body, ...]], object]
+"""Receives the frames of an instant, their reports and its bodies."""
 
 
 class Watch(NamedTuple):
@@ -46,7 +48,7 @@ class Prepared(NamedTuple):
     clip: Clip
     frame_caches: dict[ViewerNumber, FrameCache]
     viewers: dict[ViewerNumber, track.State]
-    integrator: merge_state.State
+    integrator: several.State
     odd: list[str]
     """Warnings about its backgrounds."""
     seconds: float
@@ -57,7 +59,7 @@ class LockstepState(NamedTuple):
     """The whole state between instants."""
 
     viewers: dict[ViewerNumber, track.State]
-    integrator: merge_state.State
+    integrator: several.State
     calibration: Looking
     witness: Seen
     noticed: diagnostics.State
@@ -74,7 +76,7 @@ class Performance(NamedTuple):
     """The result of tracking a clip."""
 
     bodies: Sequence[Body]
-    integrator: merge_state.State
+    integrator: several.State
     noticed: diagnostics.State
     news: tuple[str, ...]
     """Reports about the rig."""
@@ -95,18 +97,19 @@ def performed(
         course: Receives the progress, and stores the bodies.
     """
     clip, work = ready.clip, course.work
-    calibration = LiveCalibration(ready.integrator, looks=False, solver=SolverAtOnce())
+    calibration = LiveCalibration(ready.integrator.room, looks=False, solver=SolverAtOnce())
     going = work.resumed(STAGE, LockstepState) or _begun(ready, calibration, witness)
     calibration.looking, witness.seen = going.calibration, going.witness
     bodies = work.messages(BODIES)
     before_s, began = going.spent["following"], time.perf_counter()
     with _side_by_side(len(clip.views)) as pool:
         for frames in instants(clip, ready.frame_caches, sources, going.starts):
-            going, reports, body = _stepped(going, frames, calibration, pool)
-            bodies.append(body)
-            witness(frames, reports, body)
+            going, reports, merged = _stepped(going, frames, calibration, pool)
+            for body in merged.bodies:
+                bodies.append(body)
+            witness(frames, _of_one(reports, merged), merged.bodies[0])
             if watch:
-                watch.each(frames, reports, body)
+                watch.each(frames, reports, merged.bodies)
             course.tell(share_of(clip, frames))
             if work.due:
                 now_s = before_s + time.perf_counter() - began
@@ -146,25 +149,32 @@ def _stepped(
     frames: dict[ViewerNumber, CapturedFrame],
     calibration: LiveCalibration,
     pool: Executor,
-) -> tuple[LockstepState, dict[int, View], Body]:
+) -> tuple[LockstepState, dict[int, View], Merged]:
     """Process one instant."""
     start = time.perf_counter()
     viewers, reports = looked(going.viewers, frames, going.guide, pool.map)
     starts = going.starts | {number: frame.index + 1 for number, frame in frames.items()}
     middle = time.perf_counter()
-    state, body, guide = joined(going.integrator, reports, calibration)
+    state, merged = joined(going.integrator, reports, calibration)
     spent = dict(going.spent)
     spent["viewers"] += middle - start
     spent["integrator"] += time.perf_counter() - middle
     going = going._replace(
         viewers=viewers,
         integrator=state,
-        noticed=diagnostics.step(going.noticed, instant_of(reports, len(state.frames))),
-        guide=guide,
+        noticed=diagnostics.step(going.noticed, instant_of(reports, len(state.room.frames))),
+        guide=merged.guide,
         starts=starts,
         spent=spent,
     )
-    return going, reports, body
+    return going, reports, merged
+
+
+def _of_one(reports: dict[int, View], merged: Merged) -> dict[int, View]:
+    """The reports, with one person alone where several are followed."""
+    if not merged.bodies[0].person:
+        return reports
+    return {view.viewer: view for view in merged.of_first.views if view is not None}
 
 
 def _saved(

@@ -1,5 +1,6 @@
-"""How many cameras a method takes."""
+"""How many cameras a method takes, and what following everyone needs."""
 
+from common.config.settings import Settings
 from common.method import Method
 from common.video.clip_facts import Clip
 from common.video.clip_sources import ClipError
@@ -37,4 +38,17 @@ def refuse_uncalibrated(clip: Clip, why: str = "") -> None:
         raise ClipError(
             f"{clip.name}: {several} cameras need a calibration{cause}: make one (tritrack "
             "calibrate person, or board), or name two of the cameras (tritrack track --views 1,2)"
+        )
+
+
+def refuse_everyone_unmeasured(clip: Clip, settings: Settings) -> None:
+    """Refuse to follow everyone where no calibration says who is where.
+
+    Raises:
+        ClipError: When there is none.
+    """
+    if settings.people == "all" and clip.rig is None:
+        raise ClipError(
+            f"{clip.name}: to follow everyone takes a calibration: make one (tritrack calibrate "
+            "person), or follow one person (--people 1)"
         )

@@ -6,13 +6,13 @@ from typing import Any
 
 from common.body.observation import Landmarks
 from common.bus.instant import instant_of
-from common.bus.messages import Body, Guide, View, ViewerNumber, place_in_rig
+from common.bus.messages import Guide, View, ViewerNumber, place_in_rig
 from common.config.settings import Settings
 from common.method import Method
 from common.video.clip_facts import Clip, ClipView, whole_rig
-from integrator import merge, merge_state
 from integrator.live_rig.live_calibration import LiveCalibration
-from integrator.rig.same_person import of_person
+from integrator.people import several
+from integrator.people.several import Merged
 from viewer import track
 from viewer.background.background import Background
 from viewer.captured_frame import CapturedFrame
@@ -68,16 +68,16 @@ def looked(
 
 
 def joined(
-    integrator: merge_state.State, reports: Reports, calibration: LiveCalibration
-) -> tuple[merge_state.State, Body, Guide]:
-    """The integrator's state after the reports of an instant, the body and the guide.
+    integrator: several.State, reports: Reports, calibration: LiveCalibration
+) -> tuple[several.State, Merged]:
+    """The integrator's state after the reports of an instant, the bodies and the guide.
 
     Args:
         integrator: Its state.
         reports: At least one.
         calibration: Receives them, and may change the rig.
     """
-    instant = instant_of(reports, len(integrator.frames))
-    state, body, guide = merge.step(integrator, instant)
-    calibration.heard(of_person(instant, state.same.chosen))
-    return calibration.changed(state), body, guide
+    instant = instant_of(reports, len(integrator.room.frames))
+    state, merged = several.step(integrator, instant)
+    calibration.heard(merged.of_first)
+    return several.with_room(state, calibration.changed(state.room)), merged

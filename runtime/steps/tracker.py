@@ -21,6 +21,7 @@ from integrator.frame_numbers import FrameTimes
 from integrator.live_rig.live_calibration import LiveCalibration
 from integrator.live_rig.rig_solver import SolverAtOnce
 from integrator.merge_state import Start
+from integrator.people import several
 from recognizer import __main__ as recognizer
 from runtime.steps.loop_backgrounds import Learns, empty_of, is_enough, plates_of
 from runtime.steps.loop_cameras import cameras_of, clip_of
@@ -70,7 +71,7 @@ class _Going(NamedTuple):
     """By camera whose background is still being learnt."""
     viewers: dict[ViewerNumber, track.State]
     """By camera whose background is known."""
-    integrator: merge_state.State
+    integrator: several.State
     calibration: LiveCalibration
     naming: recognizer.State
     guide: Guide | None = None
@@ -177,11 +178,11 @@ class Tracker:
             _refuse_what_does_not_go_on(going, given, now_s)
             heard = going.calibration.looking
             try:
-                self._going, body = self._stepped(going, given, now_s)
+                self._going, bodies = self._stepped(going, given, now_s)
             except BaseException:  # an interrupted instant changes nothing
                 going.calibration.looking = heard
                 raise
-        return Bodies((body,), camera_names(self._going.clip))
+        return Bodies(bodies, camera_names(self._going.clip))
 
     def _refuse_too_few(self, given: Mapping[ViewerNumber, Image]) -> None:
         missing = [name for name, n in self._cameras.numbers.items() if n not in given]
@@ -210,7 +211,7 @@ class Tracker:
         }
         calibration = LiveCalibration(state, looks=False, solver=SolverAtOnce())
         learns: Learns = {} if viewers else {view.number: () for view in clip.views}
-        return _Going(clip, learns, viewers, state, calibration, naming)
+        return _Going(clip, learns, viewers, several.State(state), calibration, naming)
 
     def _backgrounds(
         self, clip: Clip, given: Mapping[ViewerNumber, Image]
@@ -224,7 +225,7 @@ class Tracker:
 
     def _stepped(
         self, going: _Going, given: Mapping[ViewerNumber, Image], now_s: float
-    ) -> tuple[_Going, Body]:
+    ) -> tuple[_Going, tuple[Body, ...]]:
         frames: dict[ViewerNumber, CapturedFrame] = {}
         for view in going.clip.views:
             if view.number in given:
@@ -237,10 +238,11 @@ class Tracker:
         for number in frames.keys() - known.keys():
             reports[number] = track.without_person(number, frames[number])
             going = self._learnt(going, number, frames[number].picture)
-        integrator, body, guide = joined(going.integrator, reports, going.calibration)
-        naming, posture = recognizer.step(going.naming, body)
-        going = going._replace(integrator=integrator, guide=guide, naming=naming, posture=posture)
-        return going._replace(instants=going.instants + 1, last_s=now_s), body
+        integrator, merged = joined(going.integrator, reports, going.calibration)
+        naming, posture = recognizer.step(going.naming, merged.bodies[0])
+        going = going._replace(integrator=integrator, guide=merged.guide, naming=naming)
+        after = going._replace(posture=posture, instants=going.instants + 1, last_s=now_s)
+        return after, merged.bodies
 
     def _learnt(self, going: _Going, number: ViewerNumber, picture: Image) -> _Going:
         """The state with one more picture of a camera's empty room, and its viewer once there

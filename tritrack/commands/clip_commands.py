@@ -20,6 +20,7 @@ from tritrack.commands.options import (
     LandmarkSource,
     Offset,
     Out,
+    People,
     Record,
     Resume,
     Size,
@@ -45,6 +46,7 @@ def track(
     views: Views = None,
     size: Size = None,
     landmarks: LandmarkSource = None,
+    people: People = None,
     trust_calibration: Annotated[
         bool, typer.Option("--trust-calibration", help="Go on with a calibration that seems wrong.")
     ] = False,
@@ -73,7 +75,7 @@ def track(
     from runtime.offline.batch import Asked, track_all
 
     seen = mode, size, landmarks, None if views is None else numbers_given(views), trust_calibration
-    asked = Asked(*seen, record, resume, force, offset, background)
+    asked = Asked(*seen, record, resume, force, offset, background, people)
     facts = track_all(clips, out, asked, console)
     tell(facts, json_wanted, line_of_runs(facts["clips"], out))
     refuse_unfollowed(facts["clips"])

@@ -155,6 +155,12 @@ Offset = Annotated[
         callback=offset_given,
     ),
 ]
+People = Annotated[
+    Literal["1", "all"] | None,
+    typer.Option(
+        help="1: one person is followed; all: everyone, each with a number. Else the settings'."
+    ),
+]
 Forced = Annotated[bool, typer.Option("--force", help="Replace a file that is there.")]
 LandmarkSource = Annotated[
     str | None,

@@ -10,7 +10,11 @@ from common.config.settings import Settings
 from common.method import METHODS
 from common.video.clips import open_clip
 from runtime.live.free_ports import refuse_held_endpoint, refuse_held_metrics, refuse_held_page
-from runtime.steps.method_cameras import refuse_too_many, refuse_uncalibrated
+from runtime.steps.method_cameras import (
+    refuse_everyone_unmeasured,
+    refuse_too_many,
+    refuse_uncalibrated,
+)
 from tritrack.doctor.installation import Finding, refused
 
 LEAST_BYTES: Final = 1 << 30
@@ -49,6 +53,7 @@ def _pictures(settings: Settings) -> str:
     clip = open_clip(settings)
     refuse_too_many(clip, METHODS[settings.mode])
     refuse_uncalibrated(clip)
+    refuse_everyone_unmeasured(clip, settings)
     views = ", ".join(
         f"view {view.number}: {view.source_size[0]}x{view.source_size[1]}, {view.fps:.4g} a second"
         for view in clip.views

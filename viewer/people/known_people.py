@@ -151,7 +151,7 @@ def expected_at(people: People, root_px: Pixel | None) -> People:
 
 def is_same(first: Landmarks, second: Landmarks) -> bool:
     """Whether two looks are of one person: their joints are in the same places."""
-    return _distance(first, second) < NEAR
+    return distance(first, second) < NEAR
 
 
 def is_person(landmarks: Landmarks | None) -> TypeGuard[Landmarks]:
@@ -164,7 +164,7 @@ def _rank(people: People, look: Look) -> tuple[bool, float]:
     track = next((track for track in people.tracks if track.number == look.number), None)
     if track is None:
         return look.number is None, -_size(look.landmarks)
-    return False, _distance(look.landmarks, track.landmarks) - KEEPS * (
+    return False, distance(look.landmarks, track.landmarks) - KEEPS * (
         track.number == people.followed
     )
 
@@ -200,7 +200,7 @@ def _off_root(track: Track, root_px: Pixel) -> float:
     return float(np.hypot(*off_px)) / _size(track.landmarks)
 
 
-def _distance(first: Landmarks, second: Landmarks) -> float:
+def distance(first: Landmarks, second: Landmarks) -> float:
     """Median distance of the joints that both are sure of, in the larger size; of few joints, that
     of the middles."""
     sure = np.minimum(first.confidence, second.confidence) > COUNTS

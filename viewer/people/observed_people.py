@@ -1,9 +1,20 @@
 """The people in a frame, as a message says them: the followed one first."""
 
+from typing import Final
+
+import msgspec
+
+from common.body.body import JOINT_NAMES
 from common.body.observation import Landmarks, Observation
 from common.raster.silhouette_report import pack
+from common.video.pictures import Image
 from viewer.landmarks.person_mask import LIKELY, LandmarkResult, PersonMask, Shown, likeliest
+from viewer.people.clothes_colours import clothes_colours
+from viewer.room.silhouette_correction import corrected
+from viewer.silhouette import silhouette
 from viewer.silhouette.silhouette import Seen, seen_of
+
+PELVIS: Final = JOINT_NAMES.index("pelvis")
 
 
 def observed(seen: Seen, shown: Shown, least_share: float) -> tuple[Observation, ...]:
@@ -26,6 +37,33 @@ def observed(seen: Seen, shown: Shown, least_share: float) -> tuple[Observation,
         for number, result in shown.others
     )
     return (first, *(each for each in rest if each is not None))
+
+
+def everyone(
+    room: silhouette.State, picture: Image, seen: Seen, shown: Shown, least_share: float
+) -> tuple[Observation, ...]:
+    """All who are seen in a frame, each with a silhouette as the followed person's is found, and
+    the colours of their clothes.
+
+    Args:
+        room: The background, in the light of the frame.
+        picture: (H, W, 3).
+        seen: The followed person's silhouette.
+        shown: What the network sees.
+        least_share: Of the picture's height; a lower silhouette is no person's.
+    """
+    people = [] if shown.followed.landmarks is None else [(shown.number, seen, shown.followed)]
+    for number, result in shown.others:
+        if result.landmarks is not None:
+            first = silhouette.at(room, picture, result.landmarks.joints_px[PELVIS])
+            rivals = _rivals(shown, number, shown.followed.person)
+            people.append((number, corrected(first, result, least_share, rivals).seen, result))
+    each = (_observation(own, result.landmarks, number) for number, own, result in people)
+    return tuple(
+        msgspec.structs.replace(one, colours=clothes_colours(picture, one))
+        for one in each
+        if one is not None
+    )
 
 
 def _rivals(shown: Shown, number: int, followed: PersonMask | None) -> list[PersonMask]:

@@ -8,7 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import TILTED_DEG, Floats, lean_deg
+from common.body.observation import Landmarks
 from common.video.pictures import Image
+from viewer.landmarks.fifteen_joints import fifteen
 from viewer.landmarks.keypoint_layouts import POINT
 from viewer.landmarks.landmark_looks import opened
 from viewer.landmarks.landmark_window import Window, window_about
@@ -38,6 +40,12 @@ class Detection(NamedTuple):
     """(2, 2) top left and bottom right of the body's box."""
     joints_px: Floats
     """(17, 2) BODY_POINTS order, coarse."""
+
+    @property
+    def landmarks(self) -> Landmarks:
+        """The joints, all as sure as the person."""
+        joints_px = tuple((x, y) for x, y in fifteen(self.joints_px).tolist())
+        return Landmarks(joints_px, (self.score,) * len(joints_px))
 
     @property
     def window(self) -> Window:

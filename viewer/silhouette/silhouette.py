@@ -126,6 +126,20 @@ def step(state: State, frame: Image, near_px: tuple[float, float] | None) -> tup
     return _adapted(state, frame, seen.box) if method.slow_light else state, seen
 
 
+def at(state: State, frame: Image, near_px: tuple[float, float]) -> Seen:
+    """Another person in a frame that `step` has processed; nothing without a background.
+
+    Args:
+        state: After `step`, in the light of the frame.
+        frame: (H, W, 3).
+        near_px: Where the centre of the body is.
+    """
+    if not state.is_known:
+        return seen_of(np.zeros(frame.shape[:2], np.uint8), 0, 1.0)
+    first = guess(state, frame, near_px)
+    return seen_of(_reclassified(first), first.blobs, state.settings.min_height_share)
+
+
 def warm() -> None:
     """Compile every kernel (seconds, once on a host), so that no frame has to wait for it."""
     empty = np.full((120, 160, 3), 128, np.uint8)

@@ -1,0 +1,1 @@
+"""Who is who: several people across the views and over time."""

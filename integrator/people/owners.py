@@ -1,0 +1,326 @@
+"""Whom each view's observations show: known people first, then groups that are nobody known yet."""
+
+from collections.abc import Sequence
+from itertools import combinations, permutations, product, starmap
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from calibration.gate.sight_clash import MEETS_M, gap_m
+from common.body.observation import Observation
+from common.rig.camera import Camera, Rig, project
+from integrator.people.known_life import Life, Places
+
+NEAR_M: Final = 0.5
+"""Distance in a picture, at the person's depth, from which on an observation is not of a person who
+was seen in the instant before, metres."""
+REACH_M_S: Final = 1.5
+"""By how much that grows for each second in which no view shows them: walking pace."""
+FARTHEST_M: Final = 4.0
+"""Its upper bound."""
+COUNTS: Final = 0.3
+"""Confidence from which a joint counts."""
+FEWEST: Final = 4
+"""Fewest joints that place a person; of fewer the middle of the silhouette counts."""
+KEEPS: Final = 0.2
+"""By how much cheaper the observation is that carries the viewer's number of the person."""
+AWAY: Final = 0.3
+"""Cost of a person whom no view has shown for AWAY_S, beside one who has just been seen."""
+AWAY_S: Final = 0.5
+UNLIKE: Final = 1.0
+"""Difference of colours that is a person's own at most, over a wall's light and shadow."""
+COLOUR_COST: Final = 0.3
+"""Cost of such a difference."""
+COLOUR_SCALE: Final = 40.0
+"""Such a difference, in units of L*a*b*."""
+GAP_COLOUR_M: Final = 0.05
+"""What such a difference adds to the gap between two views' sight lines, metres."""
+AMONG: Final = 0.5
+"""Share of the next best gap below which that of two observations is clearly one person's."""
+WRONG_M: Final = 0.02
+"""By how much another's gap must be smaller for two observations not to be of one person."""
+LATELY: Final = 15
+"""Number of instants of which gaps are the running mean."""
+SURE_AFTER: Final = 5
+"""Number of instants after which such a mean contradicts what was taken for one person."""
+NOBODY: Final = 0.3
+"""Mean confidence of landmarks below which they show no person; see `integrator/belief.py`."""
+
+People = Sequence[Sequence[Observation]]
+"""The observations of each view."""
+Place = tuple[int, int]
+"""A view, and the index of one of its observations."""
+
+
+class Group(NamedTuple):
+    """Observations of one person who is not known."""
+
+    indices: tuple[int, ...]
+    """By view, of the observation; -1: none."""
+    is_clear: bool
+    """All views show them, and no other observation could be theirs."""
+
+
+class Owned(NamedTuple):
+    """The observations of an instant, by person."""
+
+    known: tuple[tuple[int, ...], ...]
+    """For each known person, by view, the index of the observation; -1: none."""
+    groups: tuple[Group, ...]
+    """Observations that show no known person, those of one person together."""
+
+
+class Gap(NamedTuple):
+    """What two tracks of two views have shown of one person or of two."""
+
+    tracks: tuple[tuple[int, int], tuple[int, int]]
+    """A view and its viewer's number of the person, twice."""
+    mean_m: float
+    """Running mean of the gap between their sight lines, and of what their colours differ."""
+    instants: int
+
+
+def owned(
+    rig: Rig, people: People, lives: Sequence[Life], now_s: float, gaps: Sequence[Gap]
+) -> Owned:
+    """The observations by person.
+
+    Args:
+        rig: V cameras without distortion.
+        people: Of each view, without distortion.
+        lives: The known people.
+        now_s: Capture time.
+        gaps: With this instant.
+    """
+    known = [[-1] * len(people) for _ in lives]
+    for view, camera in enumerate(rig.cameras):
+        costs = np.array(
+            [[cost_of(camera, view, life, each, now_s) for each in people[view]] for life in lives]
+        ).reshape(len(lives), len(people[view]))
+        for row, column in _assigned(costs):
+            known[row][view] = column
+    _attach(people, known, gaps)
+    taken = {(view, own[view]) for own in known for view in range(len(people))}
+    unknown = [
+        (view, index)
+        for view, each in enumerate(people)
+        for index, one in enumerate(each)
+        if (view, index) not in taken and _is_person(one)
+    ]
+    groups = _grouped(people, unknown, gaps)
+    return Owned(tuple(map(tuple, known)), groups)
+
+
+def doubles(
+    rig: Rig, people: People, lives: Sequence[Life], known: Sequence[Sequence[int]]
+) -> list[tuple[int, int]]:
+    """Pairs of known people, by their places, who may be one: each is shown by views that do not
+    show the other, their sight lines meet, and their clothes are alike."""
+    found = []
+    for (i, one), (j, other) in combinations(enumerate(known), 2):
+        own, theirs = (
+            {view for view, index in enumerate(each) if index >= 0} for each in (one, other)
+        )
+        if not own or not theirs or own & theirs:
+            continue
+        apart_m = max(
+            _gap(rig, people, (a, one[a]), (b, other[b])) for a, b in product(own, theirs)
+        )
+        if apart_m < MEETS_M and colour_distance(lives[i].colours, lives[j].colours) < UNLIKE:
+            found.append((i, j))
+    return found
+
+
+def cost_of(camera: Camera, view: int, life: Life, seen: Observation, now_s: float) -> float:
+    """Cost of an observation as that of a known person, in [0, 1]; 1 or more: it is not theirs.
+
+    Args:
+        camera: The view's, without distortion.
+        view: Its place in the rig.
+        life: The person.
+        seen: The observation.
+        now_s: Capture time.
+    """
+    unlike = colour_distance(life.colours, seen.colours)
+    unseen_s = life.unseen_s(now_s)
+    is_away = unseen_s > AWAY_S
+    if is_away and unlike > UNLIKE:
+        return np.inf
+    expected_m = life.expected_m(now_s)
+    if expected_m is None:
+        return 0.0 if life.tracks[view] == seen.track else np.inf
+    gate_m = min(NEAR_M + REACH_M_S * unseen_s, FARTHEST_M)
+    far = off_m(camera, expected_m, seen) / gate_m
+    if not far < 1.0:
+        return np.inf
+    keeps = KEEPS * (life.tracks[view] == seen.track)
+    return max(0.0, 0.5 * far + AWAY * is_away + COLOUR_COST * min(unlike, UNLIKE) - keeps)
+
+
+def off_m(camera: Camera, joints_m: Places, seen: Observation) -> float:
+    """Median distance of an observation's joints from a person's in the picture, metres at the
+    person's depth; infinite where the person is behind the camera.
+
+    Args:
+        camera: Without distortion.
+        joints_m: The person's.
+        seen: The observation.
+    """
+    places_px = project(camera, joints_m)
+    depth_m = float((joints_m @ np.array(camera.R).T + np.array(camera.t))[:, 2].mean())
+    if np.isnan(places_px).any() or depth_m <= 0.0:
+        return np.inf
+    px_per_m = float(camera.K[0][0]) / depth_m
+    shown = seen.landmarks
+    sure = np.zeros(len(joints_m), np.bool_)
+    if shown is not None:
+        sure = np.array(shown.confidence) > COUNTS
+    if shown is None or sure.sum() < FEWEST:
+        box = seen.box
+        middle_px = (box.left + box.right + 1) / 2, (box.top + box.bottom + 1) / 2
+        return float(np.linalg.norm(places_px.mean(axis=0) - middle_px)) / px_per_m
+    off_px = np.linalg.norm(places_px - np.array(shown.joints_px), axis=1)[sure]
+    return float(np.median(off_px)) / px_per_m
+
+
+def colour_distance(one: Sequence[float], other: Sequence[float]) -> float:
+    """Difference of two people's colours; 0 where one is not known."""
+    if not one or not other:
+        return 0.0
+    off = np.subtract(one, other).reshape(-1, 3)
+    return float(np.linalg.norm(off, axis=1).mean()) / COLOUR_SCALE
+
+
+def _assigned(costs: np.ndarray) -> list[tuple[int, int]]:
+    """The cheapest rows and columns of a matrix, each at most once, none of 1 or more."""
+    from scipy.optimize import linear_sum_assignment  # a quarter of a second: for several alone
+
+    rows, columns = linear_sum_assignment(np.minimum(costs, 1.0))
+    pairs = zip(rows.tolist(), columns.tolist(), strict=True)
+    return [(row, column) for row, column in pairs if costs[row, column] < 1.0]
+
+
+def _attach(people: People, known: list[list[int]], gaps: Sequence[Gap]) -> None:
+    """Give those whom some views show the observations of other views whose sight lines meet
+    theirs."""
+    apart_m = _Apart(people, gaps)
+    for view in range(len(people)):
+        free = sorted(set(range(len(people[view]))) - {own[view] for own in known})
+        lacking = [own for own in known if own[view] < 0 and max(own) >= 0]
+        costs = np.array(
+            [
+                [max(apart_m(each, (view, index)) for each in _places(own)) for index in free]
+                for own in lacking
+            ]
+        ).reshape(len(lacking), len(free))
+        for row, column in _assigned(costs / MEETS_M):
+            lacking[row][view] = free[column]
+
+
+class _Apart:
+    """Gap between two observations of an instant, metres; infinite where it is not known."""
+
+    def __init__(self, people: People, gaps: Sequence[Gap]) -> None:
+        self._people, self._gaps = people, {gap.tracks: gap for gap in gaps}
+
+    def __call__(self, one: Place, other: Place) -> float:
+        gap = self.gap(one, other)
+        return np.inf if gap is None else gap.mean_m
+
+    def gap(self, one: Place, other: Place) -> Gap | None:
+        first, second = sorted((one, other))
+        return self._gaps.get((_track(self._people, first), _track(self._people, second)))
+
+
+def _places(own: Sequence[int]) -> list[Place]:
+    return [(view, index) for view, index in enumerate(own) if index >= 0]
+
+
+def mistaken(
+    people: People, known: Sequence[Sequence[int]], gaps: Sequence[Gap]
+) -> list[tuple[int, int]]:
+    """People, by their places, of whom a view shows another: that one's observation is much
+    farther from the person's than another of the same view has been lately."""
+    apart_m, found = _Apart(people, gaps), []
+    for place, own in enumerate(known):
+        for one, other in permutations(_places(own), 2):
+            gap, view = apart_m.gap(one, other), other[0]
+            if gap is None or gap.instants < SURE_AFTER:
+                continue
+            rivals = (apart_m.gap(one, (view, index)) for index in range(len(people[view])))
+            sure = [each.mean_m for each in rivals if each and each.instants >= SURE_AFTER]
+            if min(sure) < min(AMONG * gap.mean_m, gap.mean_m - WRONG_M):
+                found.append((place, view))
+                break
+    return found
+
+
+def _gap(rig: Rig, people: People, one: Place, other: Place) -> float:
+    cameras = rig.cameras[one[0]], rig.cameras[other[0]]
+    return gap_m(cameras, people[one[0]][one[1]], people[other[0]][other[1]])
+
+
+def _is_person(seen: Observation) -> bool:
+    shown = seen.landmarks
+    return shown is not None and float(np.mean(shown.confidence)) >= NOBODY
+
+
+def with_instant(gaps: Sequence[Gap], rig: Rig, people: People) -> tuple[Gap, ...]:
+    """The gaps between observations' sight lines, with those of an instant; those of two of whom
+    one is not seen now are forgotten.
+
+    Args:
+        gaps: Of the instant before.
+        rig: V cameras without distortion.
+        people: Of each view, without distortion.
+    """
+    before, after = {gap.tracks: gap for gap in gaps}, []
+    everyone = [(view, index) for view, each in enumerate(people) for index in range(len(each))]
+    for one, other in combinations(everyone, 2):
+        if one[0] == other[0]:
+            continue
+        tracks = _track(people, one), _track(people, other)
+        known = before.get(tracks, Gap(tracks, 0.0, 0))
+        apart_m = _gap(rig, people, one, other)
+        if not np.isnan(apart_m):
+            colours = (people[view][index].colours for view, index in (one, other))
+            now_m = apart_m + GAP_COLOUR_M * colour_distance(*colours)
+            count = min(known.instants + 1, LATELY)
+            known = Gap(tracks, known.mean_m + (now_m - known.mean_m) / count, count)
+        if known.instants:
+            after.append(known)
+    return tuple(after)
+
+
+def _grouped(people: People, unknown: Sequence[Place], gaps: Sequence[Gap]) -> tuple[Group, ...]:
+    """Unknown observations of one person together: those whose sight lines all meet, nearest
+    first."""
+    of_two = _Apart(people, gaps)
+
+    def apart_m(one: Place, other: Place) -> float:
+        return np.inf if one[0] == other[0] else of_two(one, other)
+
+    groups: list[tuple[Place, ...]] = [(one,) for one in unknown]
+    while len(groups) > 1:
+        least_m, first, second = min(
+            (max(starmap(apart_m, product(one, other))), one, other)
+            for one, other in combinations(groups, 2)
+        )
+        if not least_m < MEETS_M:
+            break
+        groups = [each for each in groups if each not in {first, second}] + [first + second]
+
+    def is_clear(group: tuple[Place, ...]) -> bool:
+        own_m = max(starmap(apart_m, combinations(group, 2)), default=0.0)
+        others = set(unknown) - set(group)
+        next_m = min(starmap(apart_m, product(group, others)), default=np.inf)
+        return len(group) == len(people) and own_m <= AMONG * next_m
+
+    views = range(len(people))
+    return tuple(
+        Group(tuple(dict(each).get(view, -1) for view in views), is_clear(each)) for each in groups
+    )
+
+
+def _track(people: People, place: Place) -> tuple[int, int]:
+    return place[0], people[place[0]][place[1]].track

@@ -1,0 +1,270 @@
+"""An instant of several people: each has a life of their own, and a number of their own."""
+
+import math
+from collections.abc import Sequence
+from typing import Final, NamedTuple
+
+import msgspec
+
+from common.body.observation import Observation
+from common.bus.instant import Instant
+from common.bus.messages import Body, Guide
+from integrator import merge, merge_state
+from integrator.live_rig import rig_change
+from integrator.people import owners
+from integrator.people.known_life import NO_TRACK, Life, after
+from integrator.people.owners import Gap, Group
+from integrator.person import Waiting
+from integrator.rig import same_person
+from integrator.rig.undistortion import undistorted_instant, undistorted_rig
+from integrator.single.sight import Annotations
+
+MOST: Final = 6
+"""Upper bound of the number of people."""
+FIRST: Final = 1
+"""The first person's number; 0 is that of a run that follows one person."""
+BORN_S: Final = 1.0 / 3.0
+"""How long two views must show somebody new before they are a person, seconds."""
+ALONE_BORN_S: Final = 1.0
+"""The same where one view of several shows them: another may see them soon."""
+CONFIRMED_S: Final = 1.0
+"""Time within which a new person must be believed once."""
+KEPT_S: Final = 5.0
+"""How long somebody out of sight keeps their number, seconds."""
+ONE_S: Final = 0.5
+"""How long two people, each shown by views that do not show the other, must be in one place to be
+one."""
+
+
+class Coming(NamedTuple):
+    """Observations that show nobody known."""
+
+    tracks: tuple[int, ...]
+    """By view, the viewer's number; NO_TRACK: it does not show them."""
+    since_s: float
+
+
+class Double(NamedTuple):
+    """Two people in one place, each shown by views that do not show the other."""
+
+    numbers: tuple[int, int]
+    since_s: float
+
+
+class State(NamedTuple):
+    """The integrator's state for any number of people."""
+
+    room: merge_state.State
+    """Of the person with the lowest number in sight, or without a person: rig, cameras, times. Of a
+    run that follows one person, all there is."""
+    lives: tuple[Life, ...] = ()
+    coming: tuple[Coming, ...] = ()
+    gaps: tuple[Gap, ...] = ()
+    doubles: tuple[Double, ...] = ()
+    fresh: int = FIRST
+    """The next number that nobody has had."""
+
+
+class Merged(NamedTuple):
+    """What an instant gives."""
+
+    bodies: tuple[Body, ...]
+    """By number; of a run that follows one person, and where nobody is known, one of number 0."""
+    guide: Guide
+    """About the first of them in sight."""
+    of_first: Instant
+    """The views, with that person alone where several are followed."""
+
+
+def step(
+    state: State, instant: Instant, annotations: Annotations = Annotations()
+) -> tuple[State, Merged]:
+    """One instant: the views' observations become people, and each person a body.
+
+    Args:
+        state: From `State(merge_state.init(...))` or the step before.
+        instant: The viewers' reports.
+        annotations: The user's inputs, where one person in one view is followed.
+    """
+    if state.room.settings.people == 1:
+        room, body, guide = merge.step(state.room, instant, annotations)
+        chosen = same_person.of_person(instant, room.same.chosen)
+        return state._replace(room=room), Merged((body,), guide, chosen)
+    now_s = instant.newest.captured_s
+    people = [() if view is None else view.people for view in instant.views]
+    state, owned = _recognised(state, instant, now_s)
+    own = [_of(instant, indices) for indices in owned]
+    merged = [
+        _lived(life, each, _seen(people, indices), now_s)
+        for life, each, indices in zip(state.lives, own, owned, strict=True)
+    ]
+    state = _ended(state._replace(lives=tuple(life for life, _, _ in merged)), now_s)
+    there = {life.number for life in state.lives}
+    shown = [
+        (life, body, guide, each)
+        for (life, body, guide), each in zip(merged, own, strict=True)
+        if life.number in there
+    ]
+    if not shown:
+        return _without_people(state, instant)
+    first = next((each for each in shown if each[0].seen_s == now_s), shown[0])
+    bodies = tuple(body for _, body, _, _ in shown)
+    return state._replace(room=first[0].state), Merged(bodies, first[2], first[3])
+
+
+def with_room(state: State, room: merge_state.State) -> State:
+    """The state with the rig that the room has now: a new one is everybody's."""
+    if room.calibration == state.room.calibration or room.rig is None:
+        return state._replace(room=room)
+    lives = tuple(
+        life._replace(state=rig_change.with_rig(life.state, room.rig), joints_m=None)
+        for life in state.lives
+    )
+    return state._replace(room=room, lives=lives, coming=(), gaps=(), doubles=())
+
+
+def _recognised(
+    state: State, instant: Instant, now_s: float
+) -> tuple[State, list[tuple[int, ...]]]:
+    """The state with those who are new, and each person's observation by view."""
+    rig = state.room.rig
+    if rig is None:
+        raise ValueError("several people need a rig")
+    shown = undistorted_instant(rig, instant)
+    people = [() if view is None else view.people for view in shown.views]
+    plain = undistorted_rig(rig)
+    gaps = owners.with_instant(state.gaps, plain, people)
+    found = owners.owned(plain, people, state.lives, now_s, gaps)
+    pairs = owners.doubles(plain, people, state.lives, found.known)
+    state, known = _loosened(state, people, found.known, gaps)
+    state, indices = _of_one(state, pairs, known, now_s)
+    lives, coming, fresh = list(state.lives), [], state.fresh
+    for group in found.groups:
+        tracks = _tracks(people, group.indices)
+        since_s = next((one.since_s for one in state.coming if one.tracks == tracks), now_s)
+        shown_s = now_s - since_s + 0.5 * state.room.period_s
+        if shown_s < _wait_s(group, state) or len(lives) >= MOST:
+            coming.append(Coming(tracks, since_s))
+            continue
+        lives.append(_born(state.room, fresh, tracks, now_s))
+        indices.append(group.indices)
+        fresh += 1
+    state = state._replace(lives=tuple(lives), coming=tuple(coming), gaps=gaps, fresh=fresh)
+    return state, indices
+
+
+def _loosened(
+    state: State,
+    people: Sequence[Sequence[Observation]],
+    known: Sequence[tuple[int, ...]],
+    gaps: tuple[Gap, ...],
+) -> tuple[State, list[tuple[int, ...]]]:
+    """The state and the observations in which nobody has one of another: who had is seen by the
+    other views alone from now on, and their pose begins anew."""
+    lives, indices = list(state.lives), list(known)
+    for place, view in owners.mistaken(people, known, gaps):
+        life, empty = lives[place], _alone(state.room)
+        tracks = tuple(NO_TRACK if n == view else old for n, old in enumerate(life.tracks))
+        lives[place] = life._replace(state=empty, tracks=tracks, joints_m=None, colours=())
+        indices[place] = tuple(-1 if n == view else own for n, own in enumerate(known[place]))
+    return state._replace(lives=tuple(lives)), indices
+
+
+def _of_one(
+    state: State, pairs: Sequence[tuple[int, int]], known: Sequence[tuple[int, ...]], now_s: float
+) -> tuple[State, list[tuple[int, ...]]]:
+    """The state without those who were an older person all along, who gets their observations."""
+    before = {one.numbers: one.since_s for one in state.doubles}
+    numbers = {pair: (state.lives[pair[0]].number, state.lives[pair[1]].number) for pair in pairs}
+    since_s = {pair: before.get(both, now_s) for pair, both in numbers.items()}
+    indices = list(known)
+    gone = {}
+    for (older, younger), begun_s in since_s.items():
+        if now_s - begun_s >= ONE_S and older not in gone:
+            gone[younger] = older
+            indices[older] = tuple(map(max, indices[older], indices[younger]))
+    doubles = tuple(Double(numbers[pair], begun_s) for pair, begun_s in since_s.items())
+    left = [place for place in range(len(state.lives)) if place not in gone]
+    lives = tuple(state.lives[place] for place in left)
+    return state._replace(lives=lives, doubles=doubles), [indices[place] for place in left]
+
+
+def _wait_s(group: Group, state: State) -> float:
+    """How long a new person must be shown: not at all where nobody is known and it is clear."""
+    if group.is_clear and not state.lives:
+        return 0.0
+    shown = sum(index >= 0 for index in group.indices)
+    return BORN_S if shown > 1 or len(group.indices) == 1 else ALONE_BORN_S
+
+
+def _alone(room: merge_state.State) -> merge_state.State:
+    """The integrator's state before it knows anything of a person."""
+    start = merge_state.Start(
+        room.alone, room.scale_source, times=room.times, uprights=room.uprights
+    )
+    fresh = merge_state.init(room.rig, room.period_s, room.settings, room.method, start)
+    return room._replace(
+        person=fresh.person,
+        facing=fresh.facing,
+        same=fresh.same,
+        agreement=fresh.agreement,
+        pair=fresh.pair,
+    )
+
+
+def _born(room: merge_state.State, number: int, tracks: tuple[int, ...], now_s: float) -> Life:
+    """A new person, with nothing of another."""
+    never = (-math.inf,) * len(tracks)
+    return Life(number, _alone(room), now_s, now_s, tracks, never)
+
+
+def _lived(
+    life: Life, own: Instant, seen: Sequence[Observation | None], now_s: float
+) -> tuple[Life, Body, Guide]:
+    """A person after an instant, with their body and guide."""
+    state, body, guide = merge.step(life.state, own)
+    chosen = state.same.chosen or (0,) * len(seen)
+    kept = tuple(one if index >= 0 else None for one, index in zip(seen, chosen, strict=True))
+    life = after(life._replace(state=state), body, kept, now_s)
+    status = "lost" if body.status == "empty" else body.status
+    return life, msgspec.structs.replace(body, person=life.number, status=status), guide
+
+
+def _ended(state: State, now_s: float) -> State:
+    """The state without those who are gone, or were never believed."""
+    lives = tuple(
+        life
+        for life in state.lives
+        if life.unseen_s(now_s) <= KEPT_S
+        and (life.joints_m is not None or now_s - life.born_s <= CONFIRMED_S)
+    )
+    return state._replace(lives=lives)
+
+
+def _without_people(state: State, instant: Instant) -> tuple[State, Merged]:
+    """An instant in which nobody is known."""
+    nobody = _of(instant, (-1,) * len(instant.views))
+    room, body, guide = merge.step(state.room._replace(person=Waiting()), nobody)
+    return state._replace(room=room), Merged((body,), guide, nobody)
+
+
+def _of(instant: Instant, indices: Sequence[int]) -> Instant:
+    """The views with one person alone, by view the index of the observation; -1: none."""
+    views = list(instant.views)
+    for n, (view, index) in enumerate(zip(instant.views, indices, strict=True)):
+        if view is not None:
+            people = view.people[index : index + 1] if index >= 0 else ()
+            views[n] = msgspec.structs.replace(view, people=people)
+    return Instant(tuple(views))
+
+
+def _seen(
+    people: Sequence[Sequence[Observation]], indices: Sequence[int]
+) -> tuple[Observation | None, ...]:
+    return tuple(
+        each[index] if index >= 0 else None for each, index in zip(people, indices, strict=True)
+    )
+
+
+def _tracks(people: Sequence[Sequence[Observation]], indices: Sequence[int]) -> tuple[int, ...]:
+    return tuple(NO_TRACK if one is None else one.track for one in _seen(people, indices))

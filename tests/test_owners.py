@@ -1,0 +1,197 @@
+"""Whose each observation is: near who is known, and of one person where sight lines meet."""
+
+import msgspec
+import numpy as np
+import pytest
+from crowd_of_two import BLUE, LEFT_M, RED, RIGHT_M, pose_at, shown
+from staging import PERIOD_S, PERSON, RIG
+
+from common.body.kinematics import joints
+from common.body.observation import Observation
+from common.body.proportions import body_vector
+from common.config.settings import Settings
+from common.method import DEFAULT
+from integrator import merge_state
+from integrator.people import owners
+from integrator.people.known_life import Life
+from integrator.people.owners import (
+    AWAY_S,
+    GAP_COLOUR_M,
+    LATELY,
+    NEAR_M,
+    SURE_AFTER,
+    UNLIKE,
+    Gap,
+    Owned,
+    People,
+    colour_distance,
+    cost_of,
+    mistaken,
+    off_m,
+    owned,
+    with_instant,
+)
+
+ROOM = merge_state.init(RIG, PERIOD_S, Settings(people="all"), DEFAULT)
+FIRST, SECOND = (
+    tuple(one for one in shown(place, tracks, colours) if one is not None)
+    for place, tracks, colours in ((LEFT_M, (0, 0), RED), (RIGHT_M, (1, 1), BLUE))
+)
+BOTH = list(zip(FIRST, SECOND, strict=True))
+"""Of each view, the first and the second."""
+
+
+def life(number: int, place_m: tuple[float, float], colours: tuple[float, ...] = ()) -> Life:
+    joints_m = np.asarray(joints(body_vector(PERSON), pose_at(place_m)))
+    known = Life(number, ROOM, 0.0, 1.0, (number - 1,) * 2, (1.0, 1.0))
+    return known._replace(joints_m=joints_m, joints_s=1.0, colours=colours)
+
+
+def gaps_of(people: People, instants: int = 1) -> tuple[Gap, ...]:
+    gaps: tuple[Gap, ...] = ()
+    for _ in range(instants):
+        gaps = with_instant(gaps, RIG, people)
+    return gaps
+
+
+def owned_now(people: People, lives: list[Life], now_s: float = 1.0) -> Owned:
+    return owned(RIG, people, lives, now_s, gaps_of(people))
+
+
+def test_the_known_get_their_own_in_any_order() -> None:
+    lives = [life(1, LEFT_M), life(2, RIGHT_M)]
+    assert owned_now(BOTH, lives).known == ((0, 0), (1, 1))
+    turned = [BOTH[0], BOTH[1][::-1]]
+    assert owned_now(turned, lives).known == ((0, 1), (1, 0))
+    assert owned_now(turned, lives[::-1]).known == ((1, 0), (0, 1))
+
+
+def test_strangers_are_grouped_by_sight_lines_and_the_groups_are_clear() -> None:
+    found = owned_now([BOTH[0], BOTH[1][::-1]], [])
+    assert sorted(group.indices for group in found.groups) == [(0, 1), (1, 0)]
+    assert all(group.is_clear for group in found.groups)
+
+
+def test_a_gap_is_that_of_sight_lines_and_what_colours_differ() -> None:
+    own = {gap.tracks: gap.mean_m for gap in gaps_of(BOTH)}
+    assert len(own) == 4
+    assert own[((0, 0), (1, 0))] < 0.01
+    plain = [[msgspec.structs.replace(one, colours=()) for one in view] for view in BOTH]
+    bare = {gap.tracks: gap.mean_m for gap in gaps_of(plain)}
+    assert bare[((0, 0), (1, 1))] > 0.2
+    more_m = own[((0, 0), (1, 1))] - bare[((0, 0), (1, 1))]
+    assert more_m == pytest.approx(GAP_COLOUR_M * colour_distance(RED, BLUE))
+
+
+def test_gaps_are_the_mean_of_the_last_instants() -> None:
+    known = [Gap(((0, 0), (1, 0)), 0.6, 2), Gap(((0, 0), (1, 1)), 0.0, LATELY)]
+    gaps = {gap.tracks: gap for gap in with_instant(known, RIG, BOTH)}
+    own = gaps[((0, 0), (1, 0))]
+    assert own.mean_m == pytest.approx(0.4, abs=0.01)
+    assert own.instants == 3
+    (other,) = (gap for gap in gaps_of(BOTH) if gap.tracks == ((0, 0), (1, 1)))
+    late = gaps[((0, 0), (1, 1))]
+    assert late.mean_m == pytest.approx(other.mean_m / LATELY)
+    assert late.instants == LATELY
+
+
+def test_the_gaps_of_who_is_not_seen_are_forgotten() -> None:
+    gaps = with_instant(gaps_of(BOTH), RIG, [BOTH[0], (FIRST[1],)])
+    assert {gap.tracks for gap in gaps} == {((0, 0), (1, 0)), ((0, 1), (1, 0))}
+
+
+def test_two_whose_sight_lines_meet_both_ways_are_not_clear() -> None:
+    alike = [BOTH[0], (FIRST[1], msgspec.structs.replace(FIRST[1], track=5))]
+    found = owned_now(alike, [])
+    assert not any(group.is_clear for group in found.groups if -1 not in group.indices)
+
+
+def test_a_view_that_does_not_know_who_it_shows_is_asked_by_sight_lines() -> None:
+    """The person is expected a metre away in view 2 alone: its sight lines meet view 1's."""
+    known = life(1, LEFT_M)._replace(tracks=(0, 9))
+    costs = [cost_of(camera, n, known, BOTH[n][0], 1.0) for n, camera in enumerate(RIG.cameras)]
+    assert max(costs) < 1.0
+    moved = life(1, (LEFT_M[0], LEFT_M[1] + 1.0))._replace(tracks=(0, 9))
+    assert cost_of(RIG.cameras[1], 1, moved, FIRST[1], 1.0) == np.inf
+    assert owned_now([[FIRST[0]], [FIRST[1]]], [moved]).known == ((0, 0),)
+    assert owned_now([[FIRST[0]], [SECOND[1]]], [moved]).known == ((0, -1),)
+
+
+def test_who_has_anothers_observation_is_found_after_a_third_of_a_second() -> None:
+    crossed = [(0, 1), (1, 0)]
+    assert mistaken(BOTH, crossed, gaps_of(BOTH, SURE_AFTER - 1)) == []
+    assert mistaken(BOTH, crossed, gaps_of(BOTH, SURE_AFTER)) == [(0, 1), (1, 1)]
+    assert mistaken(BOTH, [(0, 0), (1, 1)], gaps_of(BOTH, SURE_AFTER)) == []
+    assert mistaken(BOTH, [(0, -1), (1, 0)], gaps_of(BOTH, SURE_AFTER)) == [(1, 1)]
+
+
+def test_a_rival_that_is_hardly_nearer_takes_nobody() -> None:
+    def gap(first: int, second: int, mean_m: float) -> Gap:
+        return Gap(((0, first), (1, second)), mean_m, SURE_AFTER)
+
+    def found(own_m: float, rival_m: float) -> list[tuple[int, int]]:
+        gaps = [gap(0, 0, own_m), gap(0, 1, rival_m), gap(1, 0, 0.3), gap(1, 1, 0.3)]
+        return mistaken(BOTH, [(0, 0)], gaps)
+
+    assert found(0.10, 0.06) == []
+    assert found(0.10, 0.04) == [(0, 1)]
+    assert found(0.03, 0.012) == []
+
+
+def test_an_observation_is_as_far_as_the_person_has_moved_across_the_picture() -> None:
+    """Camera 1 looks along -z: a metre along x is a metre in it, at the person's depth."""
+    for off in (0.25, -1.0):
+        known = life(1, (LEFT_M[0] + off, LEFT_M[1])).joints_m
+        assert known is not None
+        assert off_m(RIG.cameras[0], known, FIRST[0]) == pytest.approx(abs(off), rel=0.05)
+    known = life(1, (0.0, 9.0)).joints_m
+    assert known is not None
+    assert off_m(RIG.cameras[0], known, FIRST[0]) == np.inf
+
+
+def test_who_is_out_of_sight_may_be_farther_but_not_in_other_clothes() -> None:
+    away = life(1, (LEFT_M[0] + 1.5 * NEAR_M, LEFT_M[1]), RED)
+    camera = RIG.cameras[0]
+    assert cost_of(camera, 0, away, FIRST[0], 1.0) == np.inf
+    assert cost_of(camera, 0, away, FIRST[0], 1.0 + 2 * AWAY_S) < 1.0
+    other = msgspec.structs.replace(FIRST[0], colours=BLUE)
+    assert cost_of(camera, 0, away, other, 1.0 + 2 * AWAY_S) == np.inf
+    near = life(1, LEFT_M, RED)
+    assert cost_of(camera, 0, near, other, 1.0) < 1.0, "light changes colours"
+
+
+def test_the_viewers_number_decides_between_two_as_near() -> None:
+    one, two = life(1, LEFT_M), life(1, LEFT_M)._replace(tracks=(4, 4))
+    seen = FIRST[0]
+    assert cost_of(RIG.cameras[0], 0, one, seen, 1.0) <= cost_of(RIG.cameras[0], 0, two, seen, 1.0)
+    moved = life(1, (LEFT_M[0] + 0.3, LEFT_M[1]))
+    assert cost_of(RIG.cameras[0], 0, moved, seen, 1.0) < cost_of(
+        RIG.cameras[0], 0, moved._replace(tracks=(4, 4)), seen, 1.0
+    )
+
+
+def test_two_who_are_never_in_one_view_and_in_one_place_may_be_one() -> None:
+    lives = [life(1, LEFT_M, RED), life(2, LEFT_M, RED)]
+    apart = [(0, -1), (-1, 0)]
+    people = [[FIRST[0]], [FIRST[1]]]
+    assert owners.doubles(RIG, people, lives, apart) == [(0, 1)]
+    assert owners.doubles(RIG, people, lives, [(0, 0), (-1, 0)]) == []
+    assert owners.doubles(RIG, [[FIRST[0]], [SECOND[1]]], lives, apart) == []
+    others = [lives[0], life(2, LEFT_M, BLUE)]
+    assert owners.doubles(RIG, people, others, apart) == []
+
+
+def test_a_look_that_shows_nobody_is_no_stranger() -> None:
+    def unsure(one: Observation) -> Observation:
+        assert one.landmarks is not None
+        low = msgspec.structs.replace(one.landmarks, confidence=(0.1,) * 15)
+        return msgspec.structs.replace(one, landmarks=low)
+
+    people = [[unsure(FIRST[0])], [unsure(FIRST[1])]]
+    assert owned_now(people, []).groups == ()
+
+
+def test_colours_differ_by_the_mean_of_both_parts() -> None:
+    assert colour_distance((50.0, 0.0, 0.0) * 2, (50.0, 30.0, 40.0, 50.0, 0.0, 0.0)) == 25.0 / 40.0
+    assert colour_distance((), RED) == 0.0
+    assert colour_distance(RED, BLUE) > UNLIKE

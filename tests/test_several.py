@@ -1,0 +1,141 @@
+"""Several people: each has one number, and a body where they stand."""
+
+import msgspec
+import numpy as np
+import pytest
+from crowd_of_two import BLUE, LEFT_M, RED, RIGHT_M, Crowd, of_all, pose_at, shown
+from staging import RIG
+from test_rig_agreement import turned
+
+from common.bus.messages import Body
+from integrator.people import several
+from integrator.people.several import BORN_S, KEPT_S, State
+from runtime.unfinished.state_codec import packed, unpacked
+
+LEFT, RIGHT = shown(LEFT_M, (0, 0), RED), shown(RIGHT_M, (1, 1), BLUE)
+AFTER_BIRTH = round(BORN_S * 15) + 1
+
+
+def places_m(bodies: tuple[Body, ...]) -> dict[int, tuple[float, float]]:
+    """Where each stands, (X, Z), by number."""
+    return {body.person: (body.joints_m[0][0], body.joints_m[0][2]) for body in bodies}
+
+
+@pytest.mark.parametrize("order", [1, -1])
+def test_two_people_are_two_bodies_where_they_stand(order: int) -> None:
+    crowd = Crowd()
+    for _ in range(8):
+        bodies = crowd.see(LEFT, RIGHT, order=order)
+    found = places_m(bodies)
+    assert sorted(found) == [1, 2]
+    by_x = sorted(found.values())
+    np.testing.assert_allclose(by_x, [LEFT_M, RIGHT_M], atol=0.1)
+    assert {body.status for body in bodies} <= {"tracking", "measuring"}
+
+
+def test_a_person_alone_is_there_at_once_and_an_empty_room_has_one_empty_body() -> None:
+    crowd = Crowd()
+    assert [(body.person, body.status) for body in crowd.see()] == [(0, "empty")]
+    assert [body.person for body in crowd.see(LEFT)] == [1]
+
+
+def test_a_second_person_must_be_shown_for_a_third_of_a_second() -> None:
+    crowd = Crowd()
+    crowd.see(LEFT)
+    counts = [len(crowd.see(LEFT, RIGHT)) for _ in range(AFTER_BIRTH)]
+    assert counts == [1] * (AFTER_BIRTH - 1) + [2]
+
+
+def test_numbers_stay_where_a_viewer_exchanges_its_own() -> None:
+    crowd = Crowd()
+    before = places_m(crowd.last(8, LEFT, RIGHT))
+    after = crowd.last(8, shown(LEFT_M, (0, 1), RED), shown(RIGHT_M, (1, 0), BLUE))
+    assert sorted(places_m(after)) == sorted(before)
+    for number, place in places_m(after).items():
+        np.testing.assert_allclose(place, before[number], atol=0.1)
+
+
+def number_at(bodies: tuple[Body, ...], place_m: tuple[float, float]) -> int:
+    found = places_m(tuple(body for body in bodies if body.joints_m))
+    return min(found, key=lambda number: float(np.hypot(*np.subtract(found[number], place_m))))
+
+
+def test_who_comes_back_has_the_number_of_before_and_who_was_away_for_long_a_new_one() -> None:
+    for away_s, is_same in ((0.8 * KEPT_S, True), (1.2 * KEPT_S, False)):
+        crowd = Crowd()
+        number = number_at(crowd.last(8, LEFT, RIGHT), RIGHT_M)
+        gone = crowd.last(round(away_s * 15), LEFT)
+        assert [body.status for body in gone if body.person == number] == ["lost"] * is_same
+        back = crowd.last(AFTER_BIRTH, LEFT, shown(RIGHT_M, (7, 7), BLUE))
+        assert (number_at(back, RIGHT_M) == number) == is_same
+        assert len({body.person for body in back}) == 2
+
+
+def test_another_person_in_the_place_of_one_who_left_is_another() -> None:
+    crowd = Crowd()
+    number = number_at(crowd.last(8, LEFT, RIGHT), RIGHT_M)
+    crowd.last(20, LEFT)
+    other = crowd.last(AFTER_BIRTH, LEFT, shown(RIGHT_M, (7, 7), (80.0, 0.0, 0.0) * 2))
+    assert number_at(other, RIGHT_M) == max(body.person for body in other) > number
+
+
+def test_who_is_hidden_in_one_view_stays_who_they_are() -> None:
+    crowd = Crowd()
+    number = number_at(crowd.last(8, LEFT, RIGHT), RIGHT_M)
+    hidden = crowd.last(20, LEFT, shown(RIGHT_M, (1, -1), BLUE))
+    (own,) = (body for body in hidden if body.person == number)
+    assert own.seen == (True, False)
+    back = crowd.last(3, LEFT, shown(RIGHT_M, (1, 5), BLUE))
+    (own,) = (body for body in back if body.person == number)
+    assert own.seen == (True, True)
+    assert len(back) == 2
+
+
+def test_one_person_whom_each_view_took_for_another_is_one_again() -> None:
+    crowd = Crowd()
+    crowd.last(20, LEFT, shown(RIGHT_M, (1, -1), BLUE))
+    state = crowd.state
+    (_, one) = state.lives
+    double = one._replace(number=3, tracks=(-1, 9), views_s=(-1.0, one.seen_s))
+    crowd.state = state._replace(lives=(*state.lives, double), fresh=4)
+    bodies = crowd.last(10, LEFT, shown(RIGHT_M, (1, 9), BLUE))
+    assert sorted(body.person for body in bodies) == [1, 2]
+
+
+def test_a_saved_state_goes_on_to_the_same_bodies() -> None:
+    crowd = Crowd()
+    crowd.last(6, LEFT, RIGHT)
+    again = Crowd()
+    again.state, again.n = unpacked(packed(crowd.state), State), crowd.n
+    assert again.see(LEFT, RIGHT) == crowd.see(LEFT, RIGHT)
+
+
+def test_a_new_rig_is_everybodys() -> None:
+    crowd = Crowd()
+    crowd.last(6, LEFT, RIGHT)
+    rig = turned(RIG, 5.0)
+    room = crowd.state.room._replace(rig=rig, calibration=1)
+    state = several.with_room(crowd.state, room)
+    assert [life.state.rig for life in state.lives] == [rig, rig]
+    assert [life.number for life in state.lives] == [1, 2]
+
+
+def test_the_guide_is_of_the_first_person_in_sight() -> None:
+    crowd = Crowd()
+    crowd.last(8, LEFT, RIGHT)
+    first = number_at(crowd.see(LEFT, RIGHT), LEFT_M)
+    state, merged = several.step(crowd.state, of_all(crowd.n, (LEFT, RIGHT)))
+    lowest = merged.bodies[0]
+    assert merged.guide.pose[:3] == pytest.approx(lowest.pose[:3], abs=0.05)
+    assert lowest.person == 1
+    assert first in {1, 2}
+    assert state.room is state.lives[0].state
+
+
+def test_a_run_that_follows_one_person_has_one_body_of_number_0() -> None:
+    crowd = Crowd()
+    settings = msgspec.structs.replace(crowd.state.room.settings, people=1)
+    crowd.state = State(crowd.state.room._replace(settings=settings))
+    bodies = crowd.last(3, LEFT, RIGHT)
+    assert [body.person for body in bodies] == [0]
+    assert bodies[0].joints_m[0][1] == pytest.approx(pose_at(LEFT_M)[1], abs=0.1)
