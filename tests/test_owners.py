@@ -16,19 +16,21 @@ from integrator.people import owners
 from integrator.people.known_life import Life
 from integrator.people.owners import (
     AWAY_S,
-    GAP_COLOUR_M,
-    LATELY,
     NEAR_M,
     SURE_AFTER,
     UNLIKE,
-    Gap,
     Owned,
-    People,
-    colour_distance,
     cost_of,
     mistaken,
     off_m,
     owned,
+)
+from integrator.people.sight_gaps import (
+    GAP_COLOUR_M,
+    LATELY,
+    Gap,
+    People,
+    colour_distance,
     with_instant,
 )
 

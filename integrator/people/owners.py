@@ -6,10 +6,18 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from calibration.gate.sight_clash import MEETS_M, gap_m
+from calibration.gate.sight_clash import MEETS_M
 from common.body.observation import Observation
 from common.rig.camera import Camera, Rig, project
 from integrator.people.known_life import Life, Places
+from integrator.people.sight_gaps import (
+    Apart,
+    Gap,
+    People,
+    Place,
+    colour_distance,
+    sight_gap_m,
+)
 
 NEAR_M: Final = 0.5
 """Distance in a picture, at the person's depth, from which on an observation is not of a person who
@@ -31,25 +39,14 @@ UNLIKE: Final = 1.0
 """Difference of colours that is a person's own at most, over a wall's light and shadow."""
 COLOUR_COST: Final = 0.3
 """Cost of such a difference."""
-COLOUR_SCALE: Final = 40.0
-"""Such a difference, in units of L*a*b*."""
-GAP_COLOUR_M: Final = 0.05
-"""What such a difference adds to the gap between two views' sight lines, metres."""
 AMONG: Final = 0.5
 """Share of the next best gap below which that of two observations is clearly one person's."""
 WRONG_M: Final = 0.02
 """By how much another's gap must be smaller for two observations not to be of one person."""
-LATELY: Final = 15
-"""Number of instants of which gaps are the running mean."""
 SURE_AFTER: Final = 5
 """Number of instants after which such a mean contradicts what was taken for one person."""
 NOBODY: Final = 0.3
 """Mean confidence of landmarks below which they show no person; see `integrator/belief.py`."""
-
-People = Sequence[Sequence[Observation]]
-"""The observations of each view."""
-Place = tuple[int, int]
-"""A view, and the index of one of its observations."""
 
 
 class Group(NamedTuple):
@@ -68,16 +65,6 @@ class Owned(NamedTuple):
     """For each known person, by view, the index of the observation; -1: none."""
     groups: tuple[Group, ...]
     """Observations that show no known person, those of one person together."""
-
-
-class Gap(NamedTuple):
-    """What two tracks of two views have shown of one person or of two."""
-
-    tracks: tuple[tuple[int, int], tuple[int, int]]
-    """A view and its viewer's number of the person, twice."""
-    mean_m: float
-    """Running mean of the gap between their sight lines, and of what their colours differ."""
-    instants: int
 
 
 def owned(
@@ -124,7 +111,7 @@ def doubles(
         if not own or not theirs or own & theirs:
             continue
         apart_m = max(
-            _gap(rig, people, (a, one[a]), (b, other[b])) for a, b in product(own, theirs)
+            sight_gap_m(rig, people, (a, one[a]), (b, other[b])) for a, b in product(own, theirs)
         )
         if apart_m < MEETS_M and colour_distance(lives[i].colours, lives[j].colours) < UNLIKE:
             found.append((i, j))
@@ -183,14 +170,6 @@ def off_m(camera: Camera, joints_m: Places, seen: Observation) -> float:
     return float(np.median(off_px)) / px_per_m
 
 
-def colour_distance(one: Sequence[float], other: Sequence[float]) -> float:
-    """Difference of two people's colours; 0 where one is not known."""
-    if not one or not other:
-        return 0.0
-    off = np.subtract(one, other).reshape(-1, 3)
-    return float(np.linalg.norm(off, axis=1).mean()) / COLOUR_SCALE
-
-
 def _assigned(costs: np.ndarray) -> list[tuple[int, int]]:
     """The cheapest rows and columns of a matrix, each at most once, none of 1 or more."""
     from scipy.optimize import linear_sum_assignment  # a quarter of a second: for several alone
@@ -203,7 +182,7 @@ def _assigned(costs: np.ndarray) -> list[tuple[int, int]]:
 def _attach(people: People, known: list[list[int]], gaps: Sequence[Gap]) -> None:
     """Give those whom some views show the observations of other views whose sight lines meet
     theirs."""
-    apart_m = _Apart(people, gaps)
+    apart_m = Apart(people, gaps)
     for view in range(len(people)):
         free = sorted(set(range(len(people[view]))) - {own[view] for own in known})
         lacking = [own for own in known if own[view] < 0 and max(own) >= 0]
@@ -217,21 +196,6 @@ def _attach(people: People, known: list[list[int]], gaps: Sequence[Gap]) -> None
             lacking[row][view] = free[column]
 
 
-class _Apart:
-    """Gap between two observations of an instant, metres; infinite where it is not known."""
-
-    def __init__(self, people: People, gaps: Sequence[Gap]) -> None:
-        self._people, self._gaps = people, {gap.tracks: gap for gap in gaps}
-
-    def __call__(self, one: Place, other: Place) -> float:
-        gap = self.gap(one, other)
-        return np.inf if gap is None else gap.mean_m
-
-    def gap(self, one: Place, other: Place) -> Gap | None:
-        first, second = sorted((one, other))
-        return self._gaps.get((_track(self._people, first), _track(self._people, second)))
-
-
 def _places(own: Sequence[int]) -> list[Place]:
     return [(view, index) for view, index in enumerate(own) if index >= 0]
 
@@ -241,7 +205,7 @@ def mistaken(
 ) -> list[tuple[int, int]]:
     """People, by their places, of whom a view shows another: that one's observation is much
     farther from the person's than another of the same view has been lately."""
-    apart_m, found = _Apart(people, gaps), []
+    apart_m, found = Apart(people, gaps), []
     for place, own in enumerate(known):
         for one, other in permutations(_places(own), 2):
             gap, view = apart_m.gap(one, other), other[0]
@@ -255,47 +219,15 @@ def mistaken(
     return found
 
 
-def _gap(rig: Rig, people: People, one: Place, other: Place) -> float:
-    cameras = rig.cameras[one[0]], rig.cameras[other[0]]
-    return gap_m(cameras, people[one[0]][one[1]], people[other[0]][other[1]])
-
-
 def _is_person(seen: Observation) -> bool:
     shown = seen.landmarks
     return shown is not None and float(np.mean(shown.confidence)) >= NOBODY
 
 
-def with_instant(gaps: Sequence[Gap], rig: Rig, people: People) -> tuple[Gap, ...]:
-    """The gaps between observations' sight lines, with those of an instant; those of two of whom
-    one is not seen now are forgotten.
-
-    Args:
-        gaps: Of the instant before.
-        rig: V cameras without distortion.
-        people: Of each view, without distortion.
-    """
-    before, after = {gap.tracks: gap for gap in gaps}, []
-    everyone = [(view, index) for view, each in enumerate(people) for index in range(len(each))]
-    for one, other in combinations(everyone, 2):
-        if one[0] == other[0]:
-            continue
-        tracks = _track(people, one), _track(people, other)
-        known = before.get(tracks, Gap(tracks, 0.0, 0))
-        apart_m = _gap(rig, people, one, other)
-        if not np.isnan(apart_m):
-            colours = (people[view][index].colours for view, index in (one, other))
-            now_m = apart_m + GAP_COLOUR_M * colour_distance(*colours)
-            count = min(known.instants + 1, LATELY)
-            known = Gap(tracks, known.mean_m + (now_m - known.mean_m) / count, count)
-        if known.instants:
-            after.append(known)
-    return tuple(after)
-
-
 def _grouped(people: People, unknown: Sequence[Place], gaps: Sequence[Gap]) -> tuple[Group, ...]:
     """Unknown observations of one person together: those whose sight lines all meet, nearest
     first."""
-    of_two = _Apart(people, gaps)
+    of_two = Apart(people, gaps)
 
     def apart_m(one: Place, other: Place) -> float:
         return np.inf if one[0] == other[0] else of_two(one, other)
@@ -320,7 +252,3 @@ def _grouped(people: People, unknown: Sequence[Place], gaps: Sequence[Gap]) -> t
     return tuple(
         Group(tuple(dict(each).get(view, -1) for view in views), is_clear(each)) for each in groups
     )
-
-
-def _track(people: People, place: Place) -> tuple[int, int]:
-    return place[0], people[place[0]][place[1]].track

@@ -13,7 +13,8 @@ from integrator import merge, merge_state
 from integrator.live_rig import rig_change
 from integrator.people import owners
 from integrator.people.known_life import NO_TRACK, Life, after
-from integrator.people.owners import Gap, Group
+from integrator.people.owners import Group
+from integrator.people.sight_gaps import Gap, with_instant
 from integrator.person import Waiting
 from integrator.rig import same_person
 from integrator.rig.undistortion import undistorted_instant, undistorted_rig
@@ -133,7 +134,7 @@ def _recognised(
     shown = undistorted_instant(rig, instant)
     people = [() if view is None else view.people for view in shown.views]
     plain = undistorted_rig(rig)
-    gaps = owners.with_instant(state.gaps, plain, people)
+    gaps = with_instant(state.gaps, plain, people)
     found = owners.owned(plain, people, state.lives, now_s, gaps)
     pairs = owners.doubles(plain, people, state.lives, found.known)
     state, known = _loosened(state, people, found.known, gaps)

@@ -18,6 +18,7 @@ from tritrack.commands.options import (
     Force,
     Forced,
     LandmarkSource,
+    NoBackground,
     Offset,
     Out,
     People,
@@ -51,10 +52,7 @@ def track(
         bool, typer.Option("--trust-calibration", help="Go on with a calibration that seems wrong.")
     ] = False,
     offset: Offset = None,
-    background: Annotated[
-        Literal["none"] | None,
-        typer.Option(help="none: people are seen by the landmark network alone."),
-    ] = None,
+    background: NoBackground = None,
     record: Record = False,
     resume: Resume = False,
     force: Force = False,

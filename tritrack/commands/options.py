@@ -155,6 +155,10 @@ Offset = Annotated[
         callback=offset_given,
     ),
 ]
+NoBackground = Annotated[
+    Literal["none"] | None,
+    typer.Option(help="none: people are seen by the landmark network alone."),
+]
 People = Annotated[
     Literal["1", "all"] | None,
     typer.Option(
