@@ -40,10 +40,22 @@ def test_there_and_back_again_is_the_same_rig() -> None:
     assert msgspec.structs.replace(back, cameras=RIG.cameras) == RIG
 
 
-def test_no_camera_and_pictures_of_two_sizes_are_told_with_the_cure() -> None:
+def test_no_camera_and_pictures_of_two_shapes_are_told_with_the_cure() -> None:
     with pytest.raises(CalibrationError, match=r"x\.toml holds no camera in a form that is known"):
         our_rig([], "x.toml")
     first, second = with_z_up(RIG)
-    other = second._replace(size_px=(640, 480))
-    with pytest.raises(CalibrationError, match=r"cam1 320x240, cam2 640x480: choose with --camera"):
+    other = second._replace(size_px=(640, 360))
+    with pytest.raises(CalibrationError, match=r"cam1 320x240, cam2 640x360: choose with --camera"):
         our_rig([first, other], "x.toml")
+
+
+def test_a_camera_of_another_size_is_scaled_to_the_first_ones() -> None:
+    """Twice as large: a pixel's middle (x, y) of it is ((x + .5) / 2, (y + .5) / 2) of ours."""
+    first, second = with_z_up(RIG)
+    K = second.K.copy()
+    K[:2] *= 2.0
+    K[:2, 2] += 0.5
+    rig = our_rig([first, second._replace(K=K, size_px=(640, 480))], "x.toml")
+    assert (rig.width, rig.height) == (320, 240)
+    for one, other in zip(rig.cameras, RIG.cameras, strict=True):
+        assert np.array(one.K) == pytest.approx(np.array(other.K))

@@ -23,6 +23,8 @@ LOOKS_UP: Final = 0.2
 """Sine of the elevation above which no camera of a room looks: beyond it the camera is rolled."""
 STEEP: Final = 0.3
 """Cosine of the depression at which a camera's picture hardly shows the up direction."""
+SAME_SHAPE: Final = 0.02
+"""Largest difference of two pictures' aspect ratios at which one is the other's size."""
 UNDER_M: Final = 0.5
 """Apparent depth below the floor, metres, at which cameras in truth hang upside down above it."""
 
@@ -43,31 +45,36 @@ class ForeignCamera(NamedTuple):
 def our_rig(cameras: Sequence[ForeignCamera], where: str, up: Up | None = None) -> Rig:
     """The cameras in our conventions: y up, whichever axis is up in theirs.
 
+    A rig has one size of picture, the first camera's; cameras of other sizes are scaled to it, as a
+    clip's pictures are when it is opened.
+
     Args:
         cameras: Cameras in another world.
         where: Named in errors.
         up: The up axis of that world; None: the one that upright pictures show as up.
 
     Raises:
-        CalibrationError: When there are none, their pictures have several sizes, they form no rig,
+        CalibrationError: When there are none, their pictures have several shapes, they form no rig,
             or they are rolled so that their pictures do not show the up direction.
     """
     if not cameras:
         raise CalibrationError(f"{where} holds no camera in a form that is known: {FORMS}")
-    sizes = {camera.size_px for camera in cameras}
-    if len(sizes) != 1:
+    width, height = cameras[0].size_px
+    scales = [(width / one.size_px[0], height / one.size_px[1]) for one in cameras]
+    if any(abs(x / y - 1.0) > SAME_SHAPE for x, y in scales):
         told = ", ".join(f"{one.name} {one.size_px[0]}x{one.size_px[1]}" for one in cameras)
         raise CalibrationError(
-            f"{where}: cameras of one size are needed, got {told}: choose with --camera"
+            f"{where}: cameras of one shape of picture are needed, got {told}: choose with --camera"
         )
     turn = axes_with_y_up(up_in_pictures(cameras, where) if up is None else _named(up))
     ours = []
-    for camera in cameras:
+    for camera, scale in zip(cameras, scales, strict=True):
         K = camera.K.copy()
         K[:2, 2] += CENTRE
+        K = np.diag([*scale, 1.0]) @ K
         R = as_matrix(camera.R @ turn.T)
         ours.append(Camera(camera.name, as_matrix(K), R, as_row(camera.t), camera.distortion))
-    rig = Rig(*sizes.pop(), tuple(ours))
+    rig = Rig(width, height, tuple(ours))
     check_rig(rig, where)
     return rig
 

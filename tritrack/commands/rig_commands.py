@@ -237,7 +237,7 @@ def import_(
         ),
     ],
     camera: Annotated[
-        list[str] | None, typer.Option(help="Only this camera; give both, in their order.")
+        list[str] | None, typer.Option(help="Only this camera; give each, in their order.")
     ] = None,
     up: Annotated[
         Literal["x", "y", "z", "-x", "-y", "-z"] | None,
