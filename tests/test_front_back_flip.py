@@ -17,6 +17,7 @@ from integrator.landmarks.front_back_flip import (
     WIDE_DEG,
     confused,
     contradicted,
+    faced,
     step,
     yaw_deg,
 )
@@ -143,3 +144,30 @@ def test_a_facing_that_is_as_likely_as_any_speaks_neither_for_nor_against() -> N
         density = (normal + UNIFORM_FLOOR) / (math.sqrt(2.0 * math.pi) * WIDE_DEG)
         due = max(1.0, 1.0 / 360.0 / density)
         assert contradicted(pose, said) == pytest.approx(due, rel=0.02)
+
+
+@pytest.mark.parametrize("lean_deg", [0.0, 50.0])
+def test_the_facing_of_each_way_of_exchanging_is_that_of_its_own_joints(lean_deg: float) -> None:
+    """Arms of one way and legs of another face between; a view that exchanged both is mirrored."""
+    rays = quartered((-20.0, 0.92), (42.0, 0.6))
+    ways = np.array([(0, 0), (1, 0), (0, 1)])
+    bodies = np.stack([facing(deg, lean_deg) for deg in (-37.0, -80.0, 20.0)], axis=1)
+    found = faced(bodies, ways, rays)
+    assert found.shape == (3, 3)
+    for arms in range(3):
+        for legs in range(3):
+            body = np.concatenate([bodies[:6, arms], bodies[6:, legs]])
+            due = 0.0
+            for view, wrong in enumerate(map(confused, rays.facing_confidence)):
+                deg, said_deg = yaw_deg(rays.rotations[view], body), rays.facing_deg[view]
+                deg = 180.0 - deg if ways[arms, view] and ways[legs, view] else deg
+                off = [math.remainder(said_deg - each, 360.0) for each in (deg, 180.0 - deg)]
+                near = [math.exp(-0.5 * (each / WIDE_DEG) ** 2) for each in off]
+                due += math.log((1 - wrong) * near[0] + wrong * near[1] + UNIFORM_FLOOR)
+            assert found[arms, legs] == pytest.approx(due, abs=0.05 if lean_deg else 1e-9)
+
+
+def test_views_without_a_facing_tell_no_exchange() -> None:
+    ways = np.array([(0, 0), (1, 1)])
+    bodies = np.stack([facing(0.0), facing(180.0)], axis=1)
+    assert not faced(bodies, ways, quartered((0.0, 0.0), (90.0, 0.0))).any()

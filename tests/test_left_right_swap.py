@@ -64,6 +64,17 @@ def test_what_a_sure_front_is_told_to_exchange_an_unsure_one_does() -> None:
     assert sure == Exchanged((0, 0), (0, 0))
 
 
+def test_arms_that_fit_exchanged_stay_where_the_faces_deny_it_for_those_arms_alone() -> None:
+    """The facings speak of arms and legs together: arms of view 2, legs of none."""
+    arms = says(0, 1, 8.0)
+    _, decided = step(None, arms, NOTHING, FACADE_AND_FLANK, SURE)
+    assert decided == Exchanged((0, 1), (0, 0))
+    faced = np.zeros((2, 2, 2, 2))
+    faced[0, 1, 0, 0] = -8.0
+    _, decided = step(None, arms, says(0, 0, 8.0), FACADE_AND_FLANK, SURE, faced)
+    assert decided == Exchanged((0, 0), (0, 0))
+
+
 def test_an_instant_is_one_step_of_a_model_of_sixteen_states() -> None:
     """Each state by itself; before it, either view's sides are drawn anew now and then."""
     rng = np.random.default_rng(0)

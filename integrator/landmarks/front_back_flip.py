@@ -1,7 +1,7 @@
 """Whether a proposal has front for back: silhouettes hardly show it, faces and feet do."""
 
 import math
-from typing import Final
+from typing import Final, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,6 +32,9 @@ TRUST: Final = 0.6
 FLIP_THRESHOLD: Final = 0.7
 """Probability above which a proposal gets flipped. It stays flipped until the probability falls
 below one minus this."""
+
+
+Degrees = TypeVar("Degrees", float, NDArray[np.float64])
 
 
 def step(
@@ -77,6 +80,29 @@ def contradicted(joints_m: NDArray[np.float64], rays: Rays) -> float:
     return math.exp(max(0.0, against))
 
 
+def faced(places_m: NDArray[np.float64], ways: NDArray[np.int_], rays: Rays) -> NDArray[np.float64]:
+    """(S, S) log likelihood of the views' facings, by the way of the arms and of the legs.
+
+    A view that exchanged both took front for back: it reports the mirror image.
+
+    Args:
+        places_m: (12, S, 3) world, the places of the joints, of JOINTS, for each way.
+        ways: (S, V) 1: that view exchanged left and right.
+        rays: The views' rays; their facings count.
+    """
+    shoulders, hips = places_m[pose_network.SHOULDERS], places_m[pose_network.HIPS]
+    across = (shoulders[0] - shoulders[1])[:, None] + (hips[0] - hips[1])
+    trunk = shoulders.sum(axis=0)[0] - hips.sum(axis=0)[0]
+    found = np.zeros((len(ways), len(ways)))
+    for view, sure in enumerate(rays.facing_confidence):
+        if sure > 0.0:
+            facing_deg = _facing_deg(rays.rotations[view], across, trunk)
+            both = np.outer(ways[:, view], ways[:, view]) > 0
+            seen_deg = np.where(both, 180.0 - facing_deg, facing_deg)
+            found += np.log(_told(rays.facing_deg[view], seen_deg, confused(sure)))
+    return found
+
+
 def yaw_deg(rotation: NDArray[np.float64], joints_m: NDArray[np.float64]) -> float:
     """Direction of shoulders and hips, as `Landmarks.facing_deg`, (-180, 180].
 
@@ -86,10 +112,19 @@ def yaw_deg(rotation: NDArray[np.float64], joints_m: NDArray[np.float64]) -> flo
     """
     shoulders, hips = joints_m[pose_network.SHOULDERS], joints_m[pose_network.HIPS]
     across = shoulders[0] - shoulders[1] + hips[0] - hips[1]
-    to_right, down, away = (rotation @ across).tolist()
-    leans_right, leans_down, _ = (rotation @ (shoulders.sum(axis=0) - hips.sum(axis=0))).tolist()
+    return float(_facing_deg(rotation, across, shoulders.sum(axis=0) - hips.sum(axis=0)))
+
+
+def _facing_deg(
+    rotation: NDArray[np.float64], across: NDArray[np.float64], trunk: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Facings (...) of girdles whose left ends lie at across (..., 3) from the right ones, of a
+    trunk (3,) that may lean."""
+    to_right, down, away = np.moveaxis(across @ rotation.T, -1, 0)
+    leans_right, leans_down, _ = (rotation @ trunk).tolist()
     lean = math.radians(lean_deg(leans_right, leans_down))
-    return math.degrees(math.atan2(away, to_right * math.cos(lean) + down * math.sin(lean)))
+    found = np.arctan2(away, to_right * math.cos(lean) + down * math.sin(lean))
+    return np.asarray(np.degrees(found))
 
 
 def confused(confidence: float) -> float:
@@ -100,13 +135,14 @@ def confused(confidence: float) -> float:
     return min(0.5, 1.0 / (1.0 + (confidence / (1.0 - confidence + 1e-9)) ** SHARPER))
 
 
-def _told(said_deg: float, facing_deg: float, wrong: float) -> float:
+def _told(said_deg: float, facing_deg: Degrees, wrong: float) -> Degrees:
     """Likelihood of a view's facing, given the person's true facing and the view's probability
     of confusing front and back."""
     plain = (1.0 - wrong) * _near(said_deg - facing_deg)
     return plain + wrong * _near(said_deg - (180.0 - facing_deg)) + UNIFORM_FLOOR
 
 
-def _near(off_deg: float) -> float:
+def _near(off_deg: Degrees) -> Degrees:
     off_deg = (off_deg + 180.0) % 360.0 - 180.0
-    return math.exp(-0.5 * (off_deg / WIDE_DEG) ** 2)
+    found: Degrees = np.exp(-0.5 * (off_deg / WIDE_DEG) ** 2)
+    return found

@@ -117,7 +117,8 @@ def _with_own_sides(
             proposal, rays, stature_m, np.stack([all_ways, all_ways])
         )
         arms, legs = (values[part].sum(axis=0).reshape((2,) * views) for part in (ARMS, LEGS))
-        exchanges, decided = left_right_swap.step(known, arms, legs, *usual)
+        faced = front_back_flip.faced(places_m, all_ways, rays).reshape((2,) * (2 * views))
+        exchanges, decided = left_right_swap.step(known, arms, legs, *usual, faced)
         at = [int(np.ravel_multi_index(part, (2,) * views)) for part in decided]
     else:
         was = np.zeros((2, views), int) if before is None else np.array(before.exchanged)

@@ -43,6 +43,7 @@ def step(
     legs: Vector,
     aside: tuple[float, ...],
     confused: tuple[float, ...],
+    faced: Vector | float = 0.0,
 ) -> tuple[Exchanges, Exchanged]:
     """One instant of a hidden Markov model whose 4^V states are all possible exchanges.
 
@@ -52,6 +53,7 @@ def step(
         legs: (2,) * V log likelihood of the legs' joints.
         aside: How much each view sees a profile: 0 front or back, 1 profile.
         confused: Probability that each view took front for back.
+        faced: (2,) * 2V log likelihood of the views' facings, by the arms and the legs exchanged.
     """
     views = len(aside)
     expected: Any = 1.0 if before is None else before
@@ -59,7 +61,7 @@ def step(
         own = (view, views + view)
         usual = _usual(*each).reshape([2 if axis in own else 1 for axis in range(2 * views)])
         expected = expected * usual if before is None else _drawn_anew(expected, usual, own)
-    said = arms.reshape(arms.shape + (1,) * views) + legs
+    said = arms.reshape(arms.shape + (1,) * views) + legs + faced
     now = expected * np.exp(TRUST * (said - said.max()))
     now /= now.sum()
     best = tuple(int(i) for i in np.unravel_index(now.argmax(), now.shape))
