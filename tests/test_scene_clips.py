@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 import pytest
 
-from common.rig.camera import project
+from common.rig.camera import centre, project
 from common.rig.rig_file import load_rig
 from synth.motion.motions import Motion, performance
 from synth.person.people import person
@@ -16,7 +16,7 @@ from synth.person.skeleton import JOINTS
 from synth.picture.actors import Part, Thing
 from synth.picture.exposure import default_rig
 from synth.picture.render import render, render_scene
-from synth.scene.scene_clips import SceneSet, in_pictures, together, write_scenes
+from synth.scene.scene_clips import SceneSet, in_pictures, rig_of, together, write_scenes
 from synth.write import Filming, SynthError, truth_of, write_clip
 
 SIZE = (96, 72)
@@ -197,6 +197,14 @@ def test_each_may_be_shown_alone_too_with_the_same_motion_room_and_noise(tmp_pat
                 np.testing.assert_array_equal(truth["gain"], own["gain"])
     films = [cv2.VideoCapture(str(at / "cam1.avi")).read()[1] for at in (scene, *each)]
     np.testing.assert_array_equal(films[0], films[1])
+
+
+@pytest.mark.parametrize(("people", "far_m"), [(1, 4.5), (3, 4.5), (4, 5.04), (5, 5.58)])
+def test_cameras_stand_back_from_a_crowd_at_their_height(people: int, far_m: float) -> None:
+    for camera, place in zip(
+        rig_of(SceneSet(people), SIZE).cameras, ([0, 1, far_m], [-far_m, 1, 0]), strict=True
+    ):
+        np.testing.assert_allclose(centre(camera), place, atol=1e-9)
 
 
 def test_one_person_alone_has_the_format_of_any_clip(tmp_path: Path) -> None:

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import Vector
-from common.rig.camera import Camera, Rig, as_matrix, as_row, paper_rig
+from common.rig.camera import Camera, Rig, as_matrix, as_row, centre, paper_rig
 from synth.person.skeleton import turned
 from synth.picture.exposure import default_rig
 
@@ -80,6 +80,16 @@ def rig_around(size: tuple[int, int], count: int, seed: int) -> Rig:
     rng = np.random.default_rng([seed, 4])
     further = (_further(n, size, rig, rng) for n in range(2, count))
     return msgspec.structs.replace(rig, cameras=(*rig.cameras[:count], *further))
+
+
+def stood_back(rig: Rig, share: float) -> Rig:
+    """The rig with its cameras farther from the middle by a share, at their heights."""
+    farther = np.array([1.0 + share, 1.0, 1.0 + share])
+    moved = (
+        msgspec.structs.replace(camera, t=as_row(-np.array(camera.R) @ (centre(camera) * farther)))
+        for camera in rig.cameras
+    )
+    return msgspec.structs.replace(rig, cameras=tuple(moved))
 
 
 def _further(n: int, size: tuple[int, int], rig: Rig, rng: np.random.Generator) -> Camera:

@@ -60,8 +60,8 @@ STAYING: Final = tuple(name for name in MOVES if name not in RETURNS)
 
 def mingle(plot: Plot, ground: Ground, rng: Random) -> Plot:
     """People walk to other places, half of the time to each other's."""
-    crowd = len(plot.there) >= CROWD
-    there = [int(who) for who in rng.permutation(plot.there)[: CROWD // 2 if crowd else None]]
+    most = int(rng.integers(1, 3)) if len(plot.there) >= CROWD else len(plot.there)
+    there = [int(who) for who in rng.permutation(plot.there)[:most]]
     if len(there) > 1 and rng.random() < 0.5:
         ends = [plot.scripts[who].end_m for who in there]
         targets = dict(zip(there, [*ends[1:], ends[0]], strict=True))

@@ -12,8 +12,9 @@ from common.npz_file import Arrays
 from common.rig.camera import Rig
 from synth.motion.motions import Motion
 from synth.picture.exposure import exposures
-from synth.picture.random_rig import MOST_CAMERAS, rig_around
+from synth.picture.random_rig import MOST_CAMERAS, rig_around, stood_back
 from synth.picture.render import render_scene, room_of
+from synth.scene.beats import CROWD
 from synth.scene.floor import inside
 from synth.scene.people_scene import MOST_PEOPLE, Scene, SceneSeed, scene
 from synth.write import (
@@ -33,6 +34,8 @@ PER_PERSON: Final = ("measures", "performer")
 """Arrays of the truth with one row per person."""
 SHOWN: Final = 0.5
 """Share of a person's joints that a picture contains when the person is in it."""
+STEP_BACK: Final = 0.12
+"""Share of their distance by which cameras stand back for each person of a crowd."""
 SCENE_S: Final = 10.0
 """Duration of a scene where none is given."""
 LASTS_S: Final = (3.0, 600.0)
@@ -81,7 +84,7 @@ def write_scenes(
             other cameras would be lost.
     """
     _refuse_what_cannot_be(wanted, size)
-    rig = rig_around(size, wanted.cameras, wanted.seed)
+    rig = rig_of(wanted, size)
     out.mkdir(parents=True, exist_ok=True)
     refuse_to_lose(out / "calibration.json", rig)
     write_rig(out / "calibration.json", rig)
@@ -97,6 +100,12 @@ def write_scenes(
         if progress is not None:
             progress(take, wanted.takes)
     return folders
+
+
+def rig_of(wanted: SceneSet, size: tuple[int, int]) -> Rig:
+    """The cameras of a set; those of a crowd stand back, for room."""
+    crowd = max(0, wanted.people - CROWD + 1)
+    return stood_back(rig_around(size, wanted.cameras, wanted.seed), STEP_BACK * crowd)
 
 
 def _made(asked: SceneSeed, rig: Rig) -> Scene:
