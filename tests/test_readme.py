@@ -47,9 +47,10 @@ class Result(NamedTuple):
 RESULTS: Final = {
     "make demo": Result(("runs/demo/poses.npz", "runs/demo/posture.json"), "posture: raise_right"),
     "tritrack doctor": Result(says="matching kernel"),
-    "tritrack synth": Result(
+    "tritrack synth --out clips": Result(
         ("clips/calibration.json", "clips/s0*/cam1.avi", "clips/s0*/cam2.avi")
     ),
+    "tritrack synth --out scenes": Result(("scenes/people2_s00_t1/truth.npz",), "1 clip written"),
     "tritrack track": Result(("runs/s0*/poses.npz", "runs/s0*/summary.json")),
     "tritrack live clips": Result(
         ("runs/live/poses.npz", "runs/live/posture.json"), "posture: squat"
