@@ -186,6 +186,23 @@ def test_a_proposal_a_quarter_turn_off_costs_no_view_its_sides(yaw_deg: float) -
     assert np.linalg.norm(found.joints_m - true_m[AT], axis=1).mean() < 0.05
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_a_proposal_that_both_faces_deny_again_and_again_takes_no_side(seed: int) -> None:
+    """The mirror image across the plane between both views is where the rays meet with one view's
+    sides exchanged. Its twelve joints are one error, not twelve votes."""
+    true_m, rng = walking(-37.0), np.random.default_rng(seed)
+    own = true_m[AT]
+    other = own[OTHER_SIDES]
+    mirrored_m = np.stack([other[:, 0], (own[:, 1] + other[:, 1]) / 2.0, own[:, 2]], axis=1)
+    shown_m = [true_m + rng.normal(0.0, 0.02, true_m.shape) for _ in range(2)]
+    turns = rays(true_m, true_m).rotations
+    first, second = (front_back_flip.yaw_deg(turn, own) for turn in turns)
+    seen = rays(shown_m[0], shown_m[1], (first + 17.0, second - 11.0))
+    found = fused(mirrored_m, seen, 0.86, 5)
+    assert found.exchanged == Exchanged((0, 0), (0, 0))
+    assert np.linalg.norm(found.joints_m - own, axis=1).mean() < 0.05
+
+
 def test_a_sure_view_is_hardly_ever_confused_and_an_unsure_one_half_the_time() -> None:
     """Rates of made-up people whom views are so sure of: 37, 15, 8 and .1 %."""
     rates = [front_back_flip.confused(sure) for sure in (0.54, 0.64, 0.7, 0.92)]

@@ -25,6 +25,9 @@ from integrator.proposal.pose_network import OTHER_SIDES
 ARMS, LEGS = slice(0, 6), slice(6, 12)
 """Indices of the arms and the legs in JOINTS."""
 FIRM_M: Final = 0.02
+ASTRAY: Final = 0.25
+"""Growth of a proposal's spread, statures, where the views' facings deny its yaw altogether: its
+joints are wrong together, by about a trunk's breadth."""
 PLATT: Final = (2.15, 4.25)
 """Platt scaling of a joint's confidence: its logit at a standard deviation of FIRM_M, and the fall
 where the deviation grows e-fold. Fitted to joints less than 50 mm off (docs/measurements.md)."""
@@ -86,9 +89,10 @@ def step(
     misfit = proposal_residual.step(
         None if before is None else before.misfit, proposed_m, rays, stature_m
     )
+    contradicted = front_back_flip.contradicted(proposed_m, rays)
     wider_m = proposal_residual.wider_m(misfit, rays, stature_m)
-    doubt = proposal_residual.doubt(misfit, turned[1])
-    doubt *= front_back_flip.contradicted(proposed_m, rays)
+    wider_m += ASTRAY * stature_m * (1.0 - 1.0 / contradicted)
+    doubt = proposal_residual.doubt(misfit, turned[1]) * contradicted
     displaced, proposed_m = proposal_offset.step(
         None if before is None else before.displaced, proposed_m, shown_right(rays), rays, stature_m
     )
