@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from integrator.landmarks import joint_mixture
 from integrator.landmarks.joint_mixture import (
     HELD,
     OUTLIER_PENALTY,
@@ -245,3 +246,20 @@ def test_views_that_look_along_one_line_do_not_meet() -> None:
 def test_the_surer_a_witness_the_narrower_is_its_spread() -> None:
     spread = Spread(right=0.01, unsure=0.05, roughly=0.1, often=0.5, far=8)
     assert spread.right_of(np.array([1.0, 0.5, 0.0])) == pytest.approx([0.01, 0.035, 0.06])
+
+
+@pytest.mark.parametrize(("views", "starts"), [(1, 3), (2, 9), (3, 19), (4, 13), (8, 25)], ids=str)
+def test_starts_are_as_many_as_the_views_and_not_as_their_pairs(views: int, starts: int) -> None:
+    """The proposal, each ray, and two rays: of up to three views any, of more neighbours' first."""
+    taken = np.full(views, joint_mixture.NONE)
+    found = [tuple(taken.tolist())]
+    while joint_mixture._next(taken):
+        found.append(tuple(taken.tolist()))
+    assert len(found) == len({*found}) == starts
+    assert found == sorted(found), "the last view's ray changes first"
+    two = [one for one in found if sum(ray != joint_mixture.NONE for ray in one) == 2]
+    neighbours = [
+        tuple(0 if n in (view, (view + 1) % views) else -1 for n in range(views))
+        for view in range(views)
+    ]
+    assert views <= joint_mixture.EACH_TWO or sorted(two) == sorted(neighbours)

@@ -48,6 +48,8 @@ SECOND: Final = 0.02
 """Confidence below which second places are left out."""
 HELD: Final = 4.0
 """Precision of a proposed joint without other evidence, 1 / m^2."""
+EACH_TWO: Final = 3
+"""Number of views up to which any rays of any two of them are a start."""
 NONE, BOTH = -1, 2
 """Index for no ray of a view, and the number of rays of a view."""
 
@@ -119,8 +121,22 @@ def _next(taken: NDArray[np.int64]) -> bool:
         if view < 0:
             return False
         taken[view] += 1
-        if (taken != NONE).sum() <= 2:
+        several = (taken != NONE).sum()
+        if several < 2 or (several == 2 and _is_tried(taken)):
             return True
+        if several > 2:
+            taken[view] = BOTH - 1  # whatever the views after it show, there are more than two
+
+
+@compiled
+def _is_tried(taken: NDArray[np.int64]) -> bool:
+    """Whether the rays of two views are a start: of many views, the likeliest ones of neighbours
+    in the order of the cameras, so that the cost of a joint grows with the views alone."""
+    views = len(taken)
+    is_tried = views <= EACH_TWO
+    for view in range(views):
+        is_tried = is_tried or (taken[view] == 0 and taken[(view + 1) % views] == 0)
+    return is_tried
 
 
 @compiled
