@@ -16,7 +16,7 @@ from common.config.settings import Settings
 from common.method import METHODS
 from common.video.clip_facts import Clip, uprights_of
 from common.video.pictures import is_camera
-from integrator import commands, diagnostics, merge, merge_state
+from integrator import commands, diagnostics, merge_state
 from integrator.frame_numbers import frame_times
 from integrator.handed_over import Estate
 from integrator.hearing.rig_publisher import RigPublisher
@@ -25,7 +25,7 @@ from integrator.integrator_warmup import warm_up
 from integrator.live_rig.live_calibration import LiveCalibration, is_by_person
 from integrator.measuring import opening_posture
 from integrator.merge_state import Start, State
-from integrator.rig.same_person import of_person
+from integrator.people import several
 from integrator.single.sight import Annotations
 
 LAST_WORDS_S: Final = 1.0
@@ -37,7 +37,7 @@ SUPERVISED_S: Final = 60.0
 class Merging(NamedTuple):
     """A run of the integrator at a moment."""
 
-    state: State
+    state: several.State
     said: Annotations = Annotations()
     """The user's annotations of the next instant."""
     noticed: diagnostics.State = diagnostics.State()
@@ -52,7 +52,7 @@ def run(
     estate: Estate = Estate(None),
 ) -> None:
     """Merge the viewers' reports until each has ended; wait for the page for a given time."""
-    at, pace, told = Merging(state), Pace(state.period_s), RigPublisher(bus)
+    at, pace, told = Merging(several.State(state)), Pace(state.period_s), RigPublisher(bus)
     heart = Heart(bus, "integrator", pace)
     begun, cameras = (estate.over, estate.start_s), len(state.frames)
     subscriber = Subscriber(bus, viewers, state.period_s, wait_s, *begun, cameras)
@@ -63,38 +63,42 @@ def run(
             at = _obeyed(at, subscriber.commands(), bus)
             subscriber.late_s = calibration.late_s
             for instant in subscriber.instants():
-                at = _merged(at, instant, bus, pace)
-                calibration.heard(of_person(instant, at.state.same.chosen))
-            at = at._replace(state=calibration.changed(at.state))
-            told.rig(at.state, calibration.late_s)
+                at, of_first = _merged(at, instant, bus, pace)
+                calibration.heard(of_first)
+            room = calibration.changed(at.state.room)
+            at = at._replace(state=several.with_room(at.state, room))
+            told.rig(room, calibration.late_s)
             news = (*calibration.news, *subscriber.news)
             if told.is_new(news):
                 heart.hurry()
-            _leave(estate, at.state, calibration, subscriber)
-            odd = [*diagnostics.assumed(at.state), *told.doubts(at.state), *news]
+            _leave(estate, room, calibration, subscriber)
+            odd = [*diagnostics.assumed(room), *told.doubts(room), *news]
             heart.beat("running", "\n".join(odd), **subscriber.counts())
-    news = (*told.doubts(at.state), *calibration.news, *subscriber.news)
-    odd = [*diagnostics.warnings(at.noticed, at.state), *news]
+    room = at.state.room
+    news = (*told.doubts(room), *calibration.news, *subscriber.news)
+    odd = [*diagnostics.warnings(at.noticed, room), *news]
     heart.beat("ended", "\n".join(odd), **subscriber.counts())
 
 
 def _obeyed(at: Merging, asked: Sequence[Command], bus: Bus) -> Merging:
     """Commands from the page, carried out and answered."""
     for command in asked:
-        state, said, answer = commands.step(at.state, at.said, command)
-        at = at._replace(state=state, said=said)
+        room, said, answer = commands.step(at.state.room, at.said, command)
+        state = several.commanded(at.state, command)
+        at = at._replace(state=state._replace(room=room), said=said)
         if answer is not None:
             bus.publish(answer)
     return at
 
 
-def _merged(at: Merging, instant: Instant, bus: Bus, pace: Pace) -> Merging:
-    """Merge one instant, and publish its guide and body."""
-    state, body, guide = merge.step(at.state, instant, at.said)
-    bus.publish(guide)
-    bus.publish(body)
-    pace.done(body.clock_s, time.monotonic())
-    return Merging(state, noticed=diagnostics.step(at.noticed, instant))
+def _merged(at: Merging, instant: Instant, bus: Bus, pace: Pace) -> tuple[Merging, Instant]:
+    """Merge one instant, and publish its guide and bodies; also the views of the first of these."""
+    state, merged = several.step(at.state, instant, at.said)
+    bus.publish(merged.guide)
+    for body in merged.bodies:
+        bus.publish(body)
+    pace.done(instant.newest.clock_s, time.monotonic())
+    return Merging(state, noticed=diagnostics.step(at.noticed, instant)), merged.of_first
 
 
 def _leave(

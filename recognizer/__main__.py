@@ -18,7 +18,7 @@ from common.bus.process import READY_S, Heart, ProcessContext, process, settle
 from common.bus.rate import Pace
 from common.config.settings import Settings
 from common.method import METHODS
-from recognizer import events, model_rate, spotting
+from recognizer import events, everyone, model_rate, spotting
 from recognizer.features import ROW_NAMES, rows
 from recognizer.model_file import ModelError, load
 from recognizer.performance_judge import Event
@@ -75,6 +75,7 @@ def step(state: State, body: Body) -> tuple[State, Posture]:
         event = state.doing.event or event
     judged, doing = state.judged, state.doing
     return state, Posture(
+        person=body.person,
         frame=body.frame,
         captured_s=body.captured_s,
         clock_s=body.clock_s,
@@ -159,8 +160,7 @@ def run(
     model: PostureModel, settings: Settings, bus: Bus, period_s: float, stop: threading.Event
 ) -> None:
     """Judge every published body until stopped."""
-    state, told = init(model, settings.recognizer.window_frames), ""
-    posture: Posture | None = None
+    state, told = everyone.init(init(model, settings.recognizer.window_frames)), ""
     pace = Pace(period_s)
     heart = Heart(bus, "recognizer", pace)
     bodies = bus.subscribe(Body)
@@ -171,15 +171,14 @@ def run(
         if body is not None:
             if ahead_s is None:  # now the integrator is there to answer
                 ahead_s = clock.asked(bus).offset_s
-            state, posture = step(state, body)
+            state, posture = everyone.step(state, body, step)
             bus.publish(posture)
             told = words(posture.event) if posture.event else told
             pace.done(body.clock_s - ahead_s, time.monotonic())
             heart.beat("running", told, **_lost(bodies))
-    last = posture and finish(state, posture)
-    if last is not None and last.event is not None:
+    for last in everyone.finished(state, finish):
         bus.publish(last)
-        told = words(last.event)
+        told = words(last.event) if last.event else told
     heart.beat("ended", told, **_lost(bodies))
 
 

@@ -296,6 +296,25 @@ def test_a_performance_that_goes_on_takes_the_place_of_what_was_told_of_it(tmp_p
     assert [row["frame"] for row in written["frames"]] == [40, 50, 64]
 
 
+def test_of_several_people_each_row_and_performance_names_its_person(tmp_path: Path) -> None:
+    def told(person: int, frame: int, event: Performance | None = None) -> Posture:
+        moment: dict[str, Any] = {"frame": frame, "captured_s": frame / 15, "clock_s": 0.0}
+        return Posture(person=person, name="kick", event=event, **moment)
+
+    kick = Performance("kick", 0, 9, 0.0, 0.6, 0.9)
+    write_postures(tmp_path, [told(1, 9, kick), told(2, 9, kick), told(2, 10)], "")
+    found = json.loads((tmp_path / "posture.json").read_text())
+    assert [(event["person"], event["name"]) for event in found["events"]] == [
+        (1, "kick"),
+        (2, "kick"),
+    ]
+    assert [(row["person"], row["frame"]) for row in found["frames"]] == [(1, 9), (2, 9), (2, 10)]
+    write_postures(tmp_path, [told(0, 9, kick)], "")
+    found = json.loads((tmp_path / "posture.json").read_text())
+    assert "person" not in found["events"][0]
+    assert "person" not in found["frames"][0]
+
+
 @pytest.mark.parametrize("frames", [0, 1, 3])
 def test_postures_are_laid_out_as_the_rest_of_a_summary_is(tmp_path: Path, frames: int) -> None:
     """Though they are written one by one."""

@@ -7,7 +7,9 @@ from crowd_of_two import BLUE, LEFT_M, RED, RIGHT_M, Crowd, of_all, pose_at, sho
 from staging import RIG
 from test_rig_agreement import turned
 
+from common.bus.control_messages import Command
 from common.bus.messages import Body
+from integrator.measuring.known_body import Unmeasured
 from integrator.people import several
 from integrator.people.several import BORN_S, KEPT_S, State
 from runtime.unfinished.state_codec import packed, unpacked
@@ -139,3 +141,13 @@ def test_a_run_that_follows_one_person_has_one_body_of_number_0() -> None:
     bodies = crowd.last(3, LEFT, RIGHT)
     assert [body.person for body in bodies] == [0]
     assert bodies[0].joints_m[0][1] == pytest.approx(pose_at(LEFT_M)[1], abs=0.1)
+
+
+def test_a_command_to_measure_the_body_anew_is_for_everyone() -> None:
+    crowd = Crowd()
+    crowd.last(8, LEFT, RIGHT)
+    state = several.commanded(crowd.state, Command(what="measure"))
+    bodies = [life.state.person.body for life in state.lives]
+    assert [isinstance(body, Unmeasured) and not body.samples for body in bodies] == [True] * 2
+    unknown = Command(what="front")
+    assert several.commanded(crowd.state, unknown) == crowd.state

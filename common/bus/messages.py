@@ -195,6 +195,8 @@ class Performance(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 class Posture(Moment, frozen=True, kw_only=True):
     """The posture of one frame."""
 
+    person: int = 0
+    """The number of whose posture it is, as in their bodies."""
     name: str
     """One of the model's posture names, or "" while it cannot be decided."""
     log_likelihoods: dict[str, float] = {}

@@ -7,9 +7,10 @@ from typing import Final, NamedTuple
 import msgspec
 
 from common.body.observation import Observation
+from common.bus.control_messages import Command
 from common.bus.instant import Instant
 from common.bus.messages import Body, Guide
-from integrator import merge, merge_state
+from integrator import commands, merge, merge_state
 from integrator.live_rig import rig_change
 from integrator.people import owners
 from integrator.people.known_life import NO_TRACK, Life, after
@@ -122,6 +123,15 @@ def with_room(state: State, room: merge_state.State) -> State:
         for life in state.lives
     )
     return state._replace(room=room, lives=lives, coming=(), gaps=(), doubles=())
+
+
+def commanded(state: State, command: Command) -> State:
+    """The state after a command to the integrator, which is for everyone."""
+    lives = tuple(
+        life._replace(state=commands.step(life.state, Annotations(), command)[0])
+        for life in state.lives
+    )
+    return state._replace(lives=lives)
 
 
 def _recognised(

@@ -98,9 +98,11 @@ def write_postures(folder: Path, postures: Iterable[Posture], performed: str) ->
     Raises:
         RunError: When it cannot be written.
     """
-    told_of = (posture.event for posture in postures if posture.event)
-    newest = {(event.name, event.onset_s): event for event in told_of}
-    events = [msgspec.to_builtins(event) for event in newest.values()]
+    ended = (posture for posture in postures if posture.event)
+    newest = {(one.person, one.event.name, one.event.onset_s): one for one in ended if one.event}
+    events = [
+        {**_whose(posture), **msgspec.to_builtins(posture.event)} for posture in newest.values()
+    ]
     told = json_text({"posture": performed, "events": events, "frames": []})
     begin, _, end = told.rpartition("]")
     rows = (_row_of(posture) for posture in postures if posture.frame >= 0)
@@ -117,8 +119,14 @@ def write_postures(folder: Path, postures: Iterable[Posture], performed: str) ->
         raise unwritable(folder, error) from error
 
 
+def _whose(posture: Posture) -> Facts:
+    """The number of a person among several."""
+    return {"person": posture.person} if posture.person else {}
+
+
 def _row_of(posture: Posture) -> Facts:
     return {
+        **_whose(posture),
         "frame": posture.frame,
         "time_s": round(posture.captured_s, 4),
         "name": posture.name,
