@@ -21,7 +21,7 @@ def test_each_camera_has_its_own_delay_against_the_first() -> None:
 def named(*names: float) -> Sightings:
     """Views that are known by the time of their only frame."""
     empty = shown(around(2), 8, "squat").tracks[0]
-    cut = JointTrack(*(part[:1] for part in empty))
+    cut = JointTrack(*(part[:2] for part in empty))
     return Sightings(tuple(cut._replace(times_s=cut.times_s + name) for name in names), (160, 120))
 
 
@@ -42,6 +42,21 @@ def test_what_the_first_camera_leaves_open_a_third_one_decides(
     assert four.is_found
     assert four.late_s == pytest.approx(0.6)
     assert clocks_of(named(0, 2)) == (UNSEEN,)
+
+
+def test_a_frame_that_one_pair_errs_by_is_outvoted(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Camera 3 seems a frame late to camera 1 alone; one that is late is so to all."""
+    told = {(0, 1): 0.0, (0, 2): 0.07, (0, 3): 0.3, (1, 2): 0.0, (3, 2): -0.3}
+    told |= {(1, 3): 0.3, (2, 3): 0.3}
+
+    def clock_of(sighting: Sighting) -> Clock:
+        first, second = (int(track.times_s[0]) for track in (sighting.first, sighting.second))
+        return Clock(told[first, second])
+
+    monkeypatch.setattr(camera_clocks, "clock_of", clock_of)
+    assert [clock.late_s for clock in clocks_of(named(0, 1, 2, 3))] == pytest.approx([0, 0, 0.3])
+    assert [clock.late_s for clock in clocks_of(named(0, 1, 2))] == pytest.approx([0.0, 0.035])
+    assert clocks_of(named(0, 2)) == (Clock(0.07),), "two cameras have no third"
 
 
 def test_the_delay_between_two_is_the_difference_of_theirs_where_both_are_found() -> None:

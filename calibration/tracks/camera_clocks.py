@@ -1,7 +1,9 @@
 """The delay of each camera of a rig against the first one."""
 
+import numpy as np
+
 from calibration.tracks.joint_tracks import Sightings
-from calibration.tracks.lateness import Clock, clock_of
+from calibration.tracks.lateness import LEAST_LATE, UNSEEN, Clock, clock_of
 
 Clocks = tuple[Clock, ...]
 """One for each view after the first: what view 1 shows at t, that view shows at t + late_s of its
@@ -12,14 +14,31 @@ def clocks_of(seen: Sightings) -> Clocks:
     """The delay of each view after the first, as far as the views determine it.
 
     A delay that a view and the first one leave open is that of a third view whose own is found,
-    plus the delay between these two, where that is found.
+    plus the delay between these two, where that is found. A delay of a frame or so is the median of
+    these ways: the pair that looks from nearly opposite sides may be a frame off by itself.
     """
     count = len(seen.tracks)
     found = {n: clock_of(seen.pair(0, n)) for n in range(1, count)}
     for _ in range(count - 2):
         for n in [n for n, clock in found.items() if not clock.is_found]:
             found[n] = _by_a_third(seen, found, n)
-    return tuple(found.values())
+    return tuple(_by_all(seen, found, n) for n in found)
+
+
+def _by_all(seen: Sightings, found: dict[int, Clock], number: int) -> Clock:
+    """The delay of a view where it would be corrected: the median by the first view and the
+    others."""
+    own, times_s = found[number], seen.tracks[number].times_s
+    if not own.is_found or len(times_s) < 2 or len(found) < 2:
+        return own
+    if abs(own.late_s) < LEAST_LATE * float(np.median(np.diff(times_s))):
+        return own
+    ways_s = [own.late_s]
+    for other, clock in found.items():
+        between = clock_of(seen.pair(other, number)) if other != number else UNSEEN
+        if clock.is_found and between.is_found:
+            ways_s.append(clock.late_s + between.late_s)
+    return own._replace(late_s=float(np.median(ways_s)))
 
 
 def _by_a_third(seen: Sightings, found: dict[int, Clock], number: int) -> Clock:
