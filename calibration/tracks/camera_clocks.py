@@ -14,8 +14,9 @@ def clocks_of(seen: Sightings) -> Clocks:
     """The delay of each view after the first, as far as the views determine it.
 
     A delay that a view and the first one leave open is that of a third view whose own is found,
-    plus the delay between these two, where that is found. A delay of a frame or so is the median of
-    these ways: the pair that looks from nearly opposite sides may be a frame off by itself.
+    plus the delay between these two, where that is found. Of all such ways to a delay the smallest
+    counts that is within a frame of their median: two views from nearly opposite sides may be a
+    frame off by themselves.
     """
     count = len(seen.tracks)
     found = {n: clock_of(seen.pair(0, n)) for n in range(1, count)}
@@ -26,19 +27,20 @@ def clocks_of(seen: Sightings) -> Clocks:
 
 
 def _by_all(seen: Sightings, found: dict[int, Clock], number: int) -> Clock:
-    """The delay of a view where it would be corrected: the median by the first view and the
-    others."""
+    """The delay of a view where it would be corrected, by the first view and all others."""
     own, times_s = found[number], seen.tracks[number].times_s
     if not own.is_found or len(times_s) < 2 or len(found) < 2:
         return own
-    if abs(own.late_s) < LEAST_LATE * float(np.median(np.diff(times_s))):
+    period_s = float(np.median(np.diff(times_s)))
+    if abs(own.late_s) < LEAST_LATE * period_s:
         return own
     ways_s = [own.late_s]
     for other, clock in found.items():
         between = clock_of(seen.pair(other, number)) if other != number else UNSEEN
         if clock.is_found and between.is_found:
             ways_s.append(clock.late_s + between.late_s)
-    return own._replace(late_s=float(np.median(ways_s)))
+    near = [way for way in ways_s if abs(way - float(np.median(ways_s))) <= period_s]
+    return own._replace(late_s=min(near or ways_s, key=abs))
 
 
 def _by_a_third(seen: Sightings, found: dict[int, Clock], number: int) -> Clock:
