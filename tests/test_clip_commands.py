@@ -13,7 +13,6 @@ from runtime.faults import Unfollowed
 from synth.scene.scene_clips import SceneSet
 from synth.write import ClipSet
 from tritrack.commands.clip_commands import (
-    export,
     line_of_runs,
     replay,
     retouch,
@@ -21,6 +20,7 @@ from tritrack.commands.clip_commands import (
     synth,
     track,
 )
+from tritrack.commands.export_command import export
 
 FACTS = {"clips": {"dance": {"believed": 0.9, "followed": 0.9, "frames": 30, "seen": 30}}}
 
@@ -140,15 +140,30 @@ def test_a_run_is_exported_as_it_is_typed_and_how_far_bones_are_off_is_said(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     facts = {"frames": 5, "file": "x.bvh"}
-    done = instead(monkeypatch, "tritrack.commands.clip_commands.export_run", facts)
+    done = instead(monkeypatch, "tritrack.commands.export_command.export_run", facts)
     said = typed(export, "run", "--to", "bvh", "--out", "x.bvh", "--scale", "cm", "--force")
-    assert done.last == (Path("run"), "bvh", Path("x.bvh"), "cm", True)
+    assert done.last == (Path("run"), "bvh", Path("x.bvh"), "cm", True, None)
     assert "5 frames written to x.bvh" in said.output
     assert "mm off" not in said.output
     done.answer = {**facts, "off_mm": {"median": 1.5, "p95": 4.0}}
-    said = typed(export, "run", "--to", "gltf")
-    assert done.last == (Path("run"), "gltf", None, "m", False)
+    said = typed(export, "run", "--to", "gltf", "--person", 2)
+    assert done.last == (Path("run"), "gltf", None, "m", False, 2)
     assert "fixed bones: 1.5 mm off, 95 % within 4.0 mm" in said.output
+
+
+def test_an_export_of_several_people_says_a_line_of_each(monkeypatch: pytest.MonkeyPatch) -> None:
+    people = [
+        {"person": 1, "frames": 5, "file": "a_person1.trc", "empty": 2},
+        {"person": 4, "frames": 1, "file": "a_person4.trc", "empty": 0},
+    ]
+    facts = {"frames": 6, "people": people, "left_out": {3: "1 frames have a pose"}}
+    instead(monkeypatch, "tritrack.commands.export_command.export_run", facts)
+    said = typed(export, "run", "--to", "trc").output.splitlines()
+    assert said[0].startswith("5 frames written to a_person1.trc; 2 without a pose are empty")
+    assert said[1:] == [
+        "1 frame written to a_person4.trc",
+        "person 3 is left out: 1 frames have a pose",
+    ]
 
 
 def test_a_recording_is_integrated_said_on_a_bus_or_played_on_a_page(

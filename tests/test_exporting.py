@@ -18,7 +18,7 @@ from runtime.store import past_run
 from runtime.store.past_run import PastRunError, open_run
 from runtime.store.pose_arrays import poses
 from runtime.store.run_exports import OWN_NAMES, Format
-from tritrack.commands.clip_commands import line_of_gaps
+from tritrack.commands.export_command import line_of_gaps
 from tritrack.exporting import ExportError, export_run
 
 LIBRARIES: dict[Format, tuple[str, str, str]] = {
@@ -323,3 +323,107 @@ def test_a_run_without_its_summary_and_a_clip_are_told_apart(run: Path, tmp_path
     (tmp_path / "walk" / "cam1.avi").write_bytes(b"")
     with pytest.raises(PastRunError, match=r"it is a clip; track it first: tritrack track .*walk"):
         open_run(tmp_path / "walk")
+
+
+@pytest.fixture
+def of_two(tmp_path: Path) -> Path:
+    """Eight frames: nobody, then a person of 1.7 m, and from frame 3 on one of 1.5 m, 1 m beside,
+    who is away in frame 5."""
+    bodies = [Body(frame=0, captured_s=0.0, clock_s=0.0, status="empty", views="none")]
+    for frame in range(1, 8):
+        bodies.append(standing(frame, 1, 1.7, 0.0))
+        if frame >= 3 and frame != 5:
+            bodies.append(standing(frame, 2, 1.5, 1.0))
+    write(tmp_path / "two", poses(bodies))
+    return tmp_path / "two"
+
+
+def standing(frame: int, person: int, height_m: float, x_m: float) -> Body:
+    pose = rest_pose()
+    places = joints(body_vector(thesis_bdp(height_m)), pose) + np.array([x_m, 0.0, 0.0])
+    return Body(
+        frame=frame,
+        person=person,
+        captured_s=frame / 15,
+        clock_s=0.0,
+        status="tracking",
+        views="both",
+        joints_m=tuple(map(tuple, places)),
+        pose=tuple(pose),
+        confidence=(0.5,) * 15,
+    )
+
+
+def rows_of(path: str | Path) -> list[dict[str, str]]:
+    return list(csv.DictReader(Path(path).read_text().splitlines()))
+
+
+def test_of_several_people_each_gets_a_file_with_their_own_frames(of_two: Path) -> None:
+    facts = export_run(of_two, "csv", None)
+    assert [Path(name).name for name in facts["files"]] == [
+        "poses_person1.csv",
+        "poses_person2.csv",
+    ]
+    first, second = (rows_of(name) for name in facts["files"])
+    assert [row["frame"] for row in first] == list("1234567")
+    assert [row["frame"] for row in second] == list("3467")
+    assert {row["person"] for row in second} == {"2"}
+    assert {row["neck_x_m"] for row in second} == {"1.0000"}
+    assert (facts["frames"], [own["frames"] for own in facts["people"]]) == (11, [7, 4])
+    assert not (of_two / "poses.csv").exists()
+
+
+@pytest.mark.parametrize(("to", "gap"), [("trc", "empty"), ("bvh", "filled")])
+def test_a_frame_without_the_person_is_a_gap_of_the_motion(
+    of_two: Path, to: Format, gap: str
+) -> None:
+    facts = export_run(of_two, to, None, person=2)
+    assert (facts["frames"], facts["first_frame"], facts[gap]) == (5, 3, 1)
+    assert Path(facts["file"]).name == f"{Path(OWN_NAMES[to]).stem}_person2.{to}"
+    assert "people" not in facts
+
+
+def test_one_person_goes_where_the_user_says_and_several_beside_each_other(
+    of_two: Path, tmp_path: Path
+) -> None:
+    out = tmp_path / "dance.mot"
+    assert export_run(of_two, "mot", out, person=1)["files"] == [
+        str(tmp_path / "dance.mot"),
+        str(tmp_path / "dance.osim"),
+    ]
+    files = [Path(name).name for name in export_run(of_two, "mot", out)["files"]]
+    assert files == [f"dance_person{n}.{end}" for n in (1, 2) for end in ("mot", "osim")]
+    before = (tmp_path / "dance_person2.osim").read_bytes()
+    (tmp_path / "dance_person1.mot").unlink()
+    with pytest.raises(FileRefused, match=r"dance_person1\.osim is there already"):
+        export_run(of_two, "mot", out)
+    assert not (tmp_path / "dance_person1.mot").exists()
+    assert (tmp_path / "dance_person2.osim").read_bytes() == before
+
+
+@pytest.mark.parametrize("number", [0, 3])
+def test_a_person_that_the_run_does_not_have_is_refused_by_those_it_has(
+    of_two: Path, number: int
+) -> None:
+    with pytest.raises(PastRunError, match=rf"has no person {number}: its people are 1, 2$"):
+        export_run(of_two, "csv", None, person=number)
+
+
+def test_a_run_of_one_person_is_one_file_whether_they_are_named_or_not(run: Path) -> None:
+    facts = export_run(run, "csv", None)
+    whole = Path(facts["file"]).read_bytes()
+    assert facts == {**export_run(run, "csv", None, person=0), "frames": 6}
+    assert (run / "poses.csv").read_bytes() == whole
+    with pytest.raises(PastRunError, match=r"has no person 1: its people are 0$"):
+        export_run(run, "csv", None, person=1)
+
+
+def test_who_has_too_few_poses_to_be_animated_is_left_out_and_said(of_two: Path) -> None:
+    arrays = dict(open_run(of_two).poses)
+    arrays["joints_m"][np.flatnonzero(arrays["person"] == 2)[1:]] = np.nan
+    write(of_two, arrays)
+    facts = export_run(of_two, "bvh", None)
+    assert [Path(name).name for name in facts["files"]] == ["body_person1.bvh"]
+    assert facts["left_out"] == {2: "1 frames have a pose, an animation needs two"}
+    with pytest.raises(ExportError, match="cannot be animated: 1 frames have a pose"):
+        export_run(of_two, "bvh", None, person=2)

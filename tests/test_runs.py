@@ -67,11 +67,13 @@ def test_a_run_that_is_written_anew_removes_what_was_exported_of_the_one_before(
     tmp_path: Path,
 ) -> None:
     """Of other poses; what the user put beside them stays."""
-    for name in (*EXPORTS, "dance.glb", "notes.toml"):
+    mine = ("dance.glb", "notes.toml", "dance_person2.glb", "body_personal.bvh")
+    of_people = ("body_person1.bvh", "markers_person12.trc", "body_person2.osim")
+    for name in (*EXPORTS, *of_people, *mine):
         (tmp_path / name).write_bytes(b"of other poses")
     write_run(tmp_path, [body(0), body(1)], Settings(), {})
     left = {path.name for path in tmp_path.iterdir()}
-    assert left == {"poses.npz", "summary.json", "dance.glb", "notes.toml"}
+    assert left == {"poses.npz", "summary.json", *mine}
 
 
 def body(frame: int, **more: object) -> Body:

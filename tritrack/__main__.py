@@ -22,8 +22,9 @@ import typer
 from common.config.renamed_settings import RenamedSetting
 from runtime.faults import code_of, told
 from runtime.terminal import complain, json_text, warn
-from tritrack.commands.clip_commands import export, replay, retouch, single, synth, track
+from tritrack.commands.clip_commands import replay, retouch, single, synth, track
 from tritrack.commands.command_output import JsonWanted, console, results
+from tritrack.commands.export_command import export
 from tritrack.commands.key_commands import examined_keys, keys
 from tritrack.commands.live_commands import (
     animate,

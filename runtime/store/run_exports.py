@@ -1,5 +1,6 @@
 """Exports in a run folder: made from its poses, and removed when these are rewritten."""
 
+import re
 from pathlib import Path
 from typing import Final, Literal
 
@@ -18,11 +19,17 @@ EXPORTS: Final = (*OWN_NAMES.values(), "body.osim")
 """Including the model that belongs to OpenSim's motion."""
 
 
+def name_of_person(path: Path, person: int) -> Path:
+    """The file of one of several people: `body.bvh` is `body_person2.bvh`."""
+    return path.with_stem(f"{path.stem}_person{person}")
+
+
 def remove_exports(folder: Path) -> None:
-    """Remove the exports of the run folder's previous poses.
+    """Remove the exports of the run folder's previous poses, those of each person among them.
 
     Raises:
         OSError: When a file cannot be removed.
     """
-    for name in EXPORTS:
-        (folder / name).unlink(missing_ok=True)
+    for path in list(folder.iterdir()):
+        if re.sub(r"_person[1-9]\d*(?=\.)", "", path.name) in EXPORTS:
+            path.unlink(missing_ok=True)

@@ -1,4 +1,4 @@
-"""The commands for recorded clips: make, track, follow, retouch and export them."""
+"""The commands for recorded clips: make, track, follow and retouch them."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -9,14 +9,12 @@ import typer
 from common.config.part_settings import BusSettings
 from common.config.settings import Settings
 from runtime.faults import refuse_unfollowed
-from runtime.store.run_exports import OWN_NAMES, Format
 from runtime.terminal import counted, json_text
 from tritrack.commands.command_output import JsonWanted, console, tell
 from tritrack.commands.options import (
     MODES,
     WORKED_ON,
     Force,
-    Forced,
     LandmarkSource,
     NoBackground,
     Offset,
@@ -30,9 +28,7 @@ from tritrack.commands.options import (
     refuse_given,
     size_given,
     writable,
-    writable_file,
 )
-from tritrack.exporting import Scale, export_run
 
 
 def track(
@@ -189,45 +185,6 @@ def single(
     if json_wanted:
         print(json_text(facts))
     refuse_unfollowed(facts["clips"])
-
-
-def export(
-    run: Annotated[Path, typer.Argument(help="A run folder.")],
-    to: Annotated[
-        Format, typer.Option(help="Format, for animation, movement laboratory or spreadsheet.")
-    ],
-    out: Annotated[
-        Path | None,
-        typer.Option(
-            help=f"The file to write; by default in RUN: {', '.join(OWN_NAMES.values())}.",
-            callback=writable_file,
-        ),
-    ] = None,
-    scale: Annotated[Scale, typer.Option(help="Unit of a BVH file.")] = "m",
-    force: Forced = False,
-    json_wanted: JsonWanted = False,
-) -> None:
-    """Write a run as a file for other programs.
-
-    Example: tritrack export runs/walk --to bvh
-    """
-    facts = export_run(run, to, out, scale, force)
-    off = facts.get("off_mm")
-    told = f"; fixed bones: {off['median']} mm off, 95 % within {off['p95']} mm" if off else ""
-    line = f"{counted(facts['frames'], 'frame')} written to {facts['file']}{told}"
-    tell(facts, json_wanted, line + line_of_gaps(facts, to))
-
-
-def line_of_gaps(facts: Mapping[str, Any], to: Format) -> str:
-    """A note on an export's frames without a pose."""
-    if facts.get("filled"):
-        return f"; {facts['filled']} without a pose lie between their neighbours"
-    if not facts.get("empty"):
-        return ""
-    line = f"; {facts['empty']} without a pose are empty"
-    if to == "trc":
-        line += ", where OpenSim's inverse kinematics stops: name times between them, or use mot"
-    return line
 
 
 def replay(
