@@ -6,16 +6,17 @@ import time
 from multiprocessing.connection import Connection
 from typing import Final
 
+from animator.heard_instants import Subscriber
 from animator.page.door import Entrance, entrance_of, invitation_of
 from animator.page.inset import limb_contours, limb_ends
 from animator.page.live import LivePage
-from animator.scene import Figure, Snapshot, limb_shapes
+from animator.scene import Figure, limb_shapes
 from common.body.body import rest_pose
 from common.body.proportions import thesis_bdp
 from common.bus.bus import Bus, BusError, open_client
-from common.bus.control_messages import Answer, Cameras, Command, Pulse
+from common.bus.control_messages import Cameras, Command
 from common.bus.message_codec import TOPICS
-from common.bus.messages import Body, Performance, Picture, Posture, View
+from common.bus.messages import Body
 from common.bus.process import READY_S, Heart, ProcessContext, process, settle
 from common.bus.rate import Pace
 from common.config.settings import Settings
@@ -30,8 +31,6 @@ PERIOD_S: Final = 1 / TOPICS[Body].hz
 BEHIND: Final = 10
 """Lowering of the page's priority where cores are scarce: the tracking must not wait for the
 page."""
-MOST_REPORTS: Final = 16
-"""Number of reports that wait for their body, which comes within a frame or two."""
 START_S: Final = 0.2
 """Seconds between two announcements of an open page, until the run begins."""
 LEFT_S: Final = 3.0
@@ -40,51 +39,6 @@ MOST_LINGER_S: Final = 3600.0
 """How long the page of an ended run stays while a browser shows it."""
 
 log = logging.getLogger(__name__)
-
-
-class Subscriber:
-    """All messages that the page shows."""
-
-    def __init__(self, bus: Bus) -> None:
-        """Subscribe from now on."""
-        self.bodies = bus.subscribe(Body)
-        self.answers = bus.subscribe(Answer)
-        self.cameras = bus.subscribe(Cameras)
-        self._reports = bus.subscribe(View)
-        self._pictures = bus.subscribe(Picture)
-        self._postures = bus.subscribe(Posture)
-        self._pulses = bus.subscribe(Pulse)
-        self._waiting: list[View] = []
-        self._snapshot = Snapshot()
-        self._by_process: dict[str, Pulse] = {}
-
-    def with_body(self, body: Body) -> tuple[Snapshot, list[Performance]]:
-        """The newest of everything, with the reports that the body was made of, and ended
-        performances."""
-        self._waiting = [*self._waiting, *self._reports.drain()][-MOST_REPORTS:]
-        reports = dict(self._snapshot.reports)
-        for report in self._waiting:
-            if report.captured_s <= body.captured_s:
-                reports[report.viewer] = report
-        pictures = dict(self._snapshot.pictures)
-        pictures.update((picture.viewer, picture) for picture in self._pictures.drain())
-        postures = self._postures.drain()
-        newest = postures[-1] if postures else self._snapshot.posture
-        events = [posture.event for posture in postures if posture.event]
-        performed = events[-1].name if events else self._snapshot.performed
-        self._snapshot = Snapshot(body, reports, pictures, newest, performed)
-        return self._snapshot, events
-
-    @property
-    def shown(self) -> Body | None:
-        """The body of the last snapshot."""
-        return self._snapshot.body
-
-    def pulses(self) -> list[Pulse]:
-        """The newest pulse of each process, if any is new."""
-        new = self._pulses.drain()
-        self._by_process.update((pulse.process, pulse) for pulse in new)
-        return list(self._by_process.values()) if new else []
 
 
 def run(page: LivePage, bus: Bus, stop: threading.Event, ending: Connection | None) -> Facts | None:
@@ -106,7 +60,7 @@ def run(page: LivePage, bus: Bus, stop: threading.Event, ending: Connection | No
             page.set_rig(cameras.rig)
         if body is not None:
             begun = True
-            page.show(*subscriber.with_body((subscriber.bodies.drain() or [body])[-1]))
+            page.show(*subscriber.with_bodies(subscriber.newest(body)))
             pace.done(body.clock_s, time.monotonic())
             heart.beat("running", page.address, dropped=subscriber.bodies.dropped)
         elif not begun and page.watched and time.monotonic() > again_s:
@@ -123,10 +77,10 @@ def run(page: LivePage, bus: Bus, stop: threading.Event, ending: Connection | No
 
 def _show_rest(page: LivePage, subscriber: Subscriber) -> None:
     """The performance that the end of the run cut off: it is reported after the last body."""
-    if subscriber.shown is not None:
-        snapshot, events = subscriber.with_body(subscriber.shown)
-        if events:
-            page.show(snapshot, events)
+    if subscriber.shown:
+        snapshot, ended = subscriber.with_bodies(subscriber.shown)
+        if ended:
+            page.show(snapshot, ended)
 
 
 def _exchange(page: LivePage, subscriber: Subscriber, bus: Bus) -> None:

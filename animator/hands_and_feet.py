@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from animator.scene import LEFT, RIGHT, Colours, Shapes, faded
+from animator.scene import Colours, Shapes, faded, side_colour
 from animator.turns import arc
 from common.body.body import LIMBS
 from common.body.extremities import ALL_JOINT_NAMES, EXTREMITY_NAMES
@@ -67,7 +67,8 @@ def _far_ends(limbs: Shapes) -> NDArray[np.float64]:
 
 
 def _colours(body: Body) -> Colours:
-    """Colours by side, pale where no knuckle or toe was measured."""
+    """Colours by side or person, pale where no knuckle or toe was measured."""
     sure = dict(zip(EXTREMITY_NAMES, body.extremities_confidence, strict=False))
     strength = [sure.get(f"{s}_{end}", 0.0) for end in ("knuckle", "toe") for s in _SIDES]
-    return faded(np.array([RIGHT, LEFT, RIGHT, LEFT], float), np.array(strength))
+    full = [side_colour(side, body.person) for side in _SIDES] * 2
+    return faded(np.array(full, float), np.array(strength))

@@ -1,7 +1,7 @@
 """The newest messages as shapes in the room, ready to be drawn."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Final, NamedTuple
 
 import msgspec
@@ -22,6 +22,16 @@ LEFT: Final[Colour] = (224, 146, 68)
 """Colour of the body's left side: amber. It and RIGHT are distinct for colour-blind people."""
 RIGHT: Final[Colour] = (66, 122, 184)
 TRUNK: Final[Colour] = (140, 152, 166)
+PEOPLE: Final[tuple[Colour, ...]] = (
+    (0, 114, 178),
+    (230, 159, 0),
+    (0, 158, 115),
+    (204, 121, 167),
+    (213, 94, 0),
+    (86, 180, 233),
+)
+"""Colours of the people of a run that follows several, the first person's first; distinct for
+colour-blind people. Source: Okabe & Ito 2008, Color Universal Design."""
 UNSURE: Final[Colour] = (222, 225, 229)
 """Colour of a limb with confidence 0."""
 
@@ -46,17 +56,30 @@ _JOINT_OF_LIMB: Final = tuple(
 """Index of the landmark whose confidence a limb has: the one at its far end."""
 
 
+class Known(msgspec.Struct, frozen=True):
+    """A person of an instant."""
+
+    body: Body
+    posture: Posture | None = None
+    performed: str = ""
+    """Posture of their last reported performance."""
+
+
 class Snapshot(msgspec.Struct, frozen=True):
     """The newest message of everything that is shown; None for one that has not come yet."""
 
     body: Body | None = None
+    """Of several people, that of the lowest number."""
     reports: Mapping[int, View] = {}
     """By viewer."""
     pictures: Mapping[int, Picture] = {}
     """By viewer."""
     posture: Posture | None = None
+    """Of the same person."""
     performed: str = ""
     """Posture of the last reported performance."""
+    others: tuple[Known, ...] = ()
+    """All other people of the instant, by number."""
 
 
 class Figure(NamedTuple):
@@ -67,6 +90,8 @@ class Figure(NamedTuple):
     """(25,), POSE_NAMES order."""
     confidence: tuple[float, ...] = ()
     """JOINT_NAMES order, in [0, 1]; empty: all are sure."""
+    person: int = 0
+    """As in the body; it sets the colour."""
 
 
 class Shapes(NamedTuple):
@@ -100,11 +125,33 @@ class Viewpoint(NamedTuple):
     look_at: Vector
 
 
+def snapshot_of(
+    bodies: Sequence[Body],
+    postures: Mapping[int, Posture],
+    performed: Mapping[int, str],
+    reports: Mapping[int, View],
+    pictures: Mapping[int, Picture] = {},
+) -> Snapshot:
+    """What is shown of an instant.
+
+    Args:
+        bodies: One or more, by number.
+        postures: By person.
+        performed: By person, the posture of their last reported performance.
+        reports: By viewer.
+        pictures: By viewer.
+    """
+    first, *others = (
+        Known(body, postures.get(body.person), performed.get(body.person, "")) for body in bodies
+    )
+    return Snapshot(first.body, reports, pictures, first.posture, first.performed, tuple(others))
+
+
 def figure(body: Body | None) -> Figure | None:
     """The drawable part of a body; None where it has no pose or no measures."""
     if body is None or not body.pose or body.bdp is None:
         return None
-    return Figure(body.bdp, np.array(body.pose), body.confidence)
+    return Figure(body.bdp, np.array(body.pose), body.confidence, body.person)
 
 
 def limb_shapes(figure: Figure) -> Shapes:
@@ -112,7 +159,7 @@ def limb_shapes(figure: Figure) -> Shapes:
     frames = limb_frames(body_vector(figure.bdp), figure.pose)
     wxyzs = Rotation.from_matrix(frames[:, 3:].reshape(-1, 3, 3)).as_quat(scalar_first=True)
     scales = np.array([half_sizes(getattr(figure.bdp, limb)) for limb in LIMBS])
-    return Shapes(frames[:, :3], wxyzs, scales, limb_colours(figure.confidence))
+    return Shapes(frames[:, :3], wxyzs, scales, limb_colours(figure.confidence, figure.person))
 
 
 def round_shapes(limbs: Shapes) -> Shapes:
@@ -138,13 +185,24 @@ def rows_of(shapes: Shapes, rows: list[int]) -> Shapes:
     )
 
 
-def limb_colours(confidence: tuple[float, ...] = ()) -> Colours:
-    """The colour of each limb, (10, 3): by side, faded where its far joint is unsure."""
-    sides = {"l": LEFT, "r": RIGHT}
-    full = np.array([sides[limb[0]] if limb[1] == "_" else TRUNK for limb in LIMBS], float)
+def limb_colours(confidence: tuple[float, ...] = (), person: int = 0) -> Colours:
+    """The colour of each limb, (10, 3): by side, or of one of several people by person; faded
+    where its far joint is unsure."""
+    sides = [limb[0] if limb[1] == "_" else "" for limb in LIMBS]
+    full = np.array([side_colour(side, person) for side in sides], float)
     if not confidence:
         return full.astype(np.uint8)
     return faded(full, np.array(confidence)[list(_JOINT_OF_LIMB)])
+
+
+def side_colour(side: str, person: int) -> Colour:
+    """The colour of a part of the body on a side, l, r or "" for neither.
+
+    All parts of one of several people have that person's colour.
+    """
+    if person:
+        return PEOPLE[(person - 1) % len(PEOPLE)]
+    return {"l": LEFT, "r": RIGHT}.get(side, TRUNK)
 
 
 def faded(full: Vector, strength: Vector) -> Colours:

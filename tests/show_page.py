@@ -6,18 +6,19 @@ import sys
 import time
 
 import cv2
+import msgspec
 import numpy as np
 
 from animator.page.inset import limb_contours, limb_ends
 from animator.page.live import LivePage
-from animator.scene import Figure, Snapshot
+from animator.scene import Figure, Known, Snapshot
 from common.body.body import POSE_INDEX, Vector, rest_pose
 from common.body.extremities import extremities
 from common.body.kinematics import joints
 from common.body.proportions import body_vector, thesis_bdp
 from common.bus.control_messages import Pulse
 from common.bus.messages import Body, Posture, ViewerNumber
-from common.raster.silhouette_report import silhouette_view
+from common.raster.silhouette_report import mask_of, silhouette_view
 from common.rig.camera import Camera, paper_rig, project
 
 RATE_HZ = 15
@@ -29,10 +30,11 @@ VIEWERS: tuple[ViewerNumber, ...] = (1, 2)
 RIG = paper_rig((160, 120), (200.0, 200.0), (4.5, 4.5))
 
 
-def snapshot_at(frame: int) -> Snapshot:
-    """What a run without fault would say of a body that walks in place."""
+def snapshot_at(frame: int, x_m: float = 0.0) -> Snapshot:
+    """What a run without fault would say of a body that walks in place, `x_m` aside."""
     seconds = frame / RATE_HZ
     pose = pose_at(seconds)
+    pose[POSE_INDEX["x"]] += x_m
     masks = [silhouette(camera, pose) for camera in RIG.cameras]
     joints_m = joints(body_vector(BDP), pose)
     ends_m = extremities(joints_m, STATURE_M)
@@ -68,6 +70,40 @@ def snapshot_at(frame: int) -> Snapshot:
             log_likelihoods={"walk_in_place": -61.0, "squat": -142.5, "kick_left_side": -171.2},
             segment=(max(0, frame - 39), frame),
         ),
+    )
+
+
+def two_at(frame: int, aside_m: float = 0.7) -> Snapshot:
+    """The same of two people on either side of the room's middle, the second half a second
+    behind and with a posture of their own."""
+    first, second = beside(frame, 1, -aside_m), beside(frame + RATE_HZ // 2, 2, aside_m)
+    body, posture = second.body, second.posture
+    assert body is not None
+    assert posture is not None
+    now = {"frame": frame, "captured_s": frame / RATE_HZ, "clock_s": frame / RATE_HZ}
+    other = Known(
+        msgspec.structs.replace(body, **now),
+        msgspec.structs.replace(
+            posture, **now, name="squat", doing="squat", log_likelihoods={"squat": -60.0}
+        ),
+    )
+    masks = [mask_of(first.reports[n]) | mask_of(second.reports[n]) for n in VIEWERS]
+    reports = {
+        n: silhouette_view(n, mask, frame, frame / RATE_HZ)
+        for n, mask in zip(VIEWERS, masks, strict=True)
+    }
+    return msgspec.structs.replace(first, reports=reports, others=(other,))
+
+
+def beside(frame: int, person: int, x_m: float) -> Snapshot:
+    """As `snapshot_at`, but at another place, and with a number."""
+    seen = snapshot_at(frame, x_m)
+    assert seen.body is not None
+    assert seen.posture is not None
+    return msgspec.structs.replace(
+        seen,
+        body=msgspec.structs.replace(seen.body, person=person),
+        posture=msgspec.structs.replace(seen.posture, person=person),
     )
 
 

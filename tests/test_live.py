@@ -9,7 +9,7 @@ import time
 from collections.abc import Iterator
 from multiprocessing import Pipe
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import cv2
 import msgspec
@@ -19,7 +19,7 @@ import pytest
 pytest.importorskip("websockets", reason="the page is an extra: install tritrack[page]")
 
 from browser import NotNow, Tab, open_tab, own_address, saved
-from show_page import RIG, pulses, snapshot_at
+from show_page import RIG, pulses, snapshot_at, two_at
 from test_page_server import free_port
 from waiting import until
 from websockets.sync.client import connect
@@ -27,12 +27,12 @@ from websockets.sync.client import connect
 import animator.__main__
 from animator.page.door import Entrance, invitation_of
 from animator.page.live import LivePage
-from animator.scene import LEFT, RIGHT
+from animator.scene import LEFT, PEOPLE, RIGHT
 from common.body.body import POSE_INDEX
 from common.body.observation import Facing
 from common.bus.bus import BusError
 from common.bus.control_messages import Answer
-from common.bus.messages import Performance
+from common.bus.messages import Performance, Posture
 from common.bus.process import ProcessContext
 from common.config.settings import Settings
 from runtime.live.free_ports import free_settings
@@ -245,6 +245,7 @@ def test_a_browser_shows_the_body_both_views_and_asks_nobody_else(
     text = looking.tab.text()
     assert "walk in place" in text
     assert looking.ask("document.querySelector('#trust').hidden"), "nothing is told of the cameras"
+    assert "People" not in text, "one person needs no list"
     assert "15.0 frames a second · 11 ms from camera to pose · no deadline missed" in text
     assert looking.ask("document.documentElement.scrollWidth <= innerWidth"), "it is too wide"
     own = (page.address, page.address.replace("http", "ws"), "data:", "blob:")
@@ -279,12 +280,80 @@ def test_the_pictures_of_more_than_two_cameras_are_a_strip(
     assert not looking.ask("document.querySelector('#front').hidden")
 
 
+def ended(event: Performance, person: int = 0) -> Posture:
+    return Posture(
+        frame=event.end, captured_s=event.end_s, clock_s=0.0, name="", person=person, event=event
+    )
+
+
+@pytest.mark.slow
+def test_each_of_several_people_has_a_colour_a_number_and_a_posture(
+    page: LivePage, looking: Looking, tmp_path: Path
+) -> None:
+    page.show(two_at(4), [ended(Performance("squat", 0, 3, 0.0, 0.2, 1.0, 1), 2)])
+    assert looking.until("document.querySelectorAll('#everyone li').length === 2")
+    looking.drawn()
+    whole = saved(looking.tab.screenshot(), tmp_path / "page.png")
+    for colour in PEOPLE[:2]:
+        assert share_like(looking.seen("#room"), colour) > 0.005, f"look at {whole}"
+        first = looking.seen("#views figure:nth-child(1) canvas")
+        assert share_like(first, colour) > 0.002, f"look at {whole}"
+    assert looking.ask(LISTED) == "1 walk in place tracking|2 squat tracking"
+    assert looking.ask("document.querySelector('#posture').innerText").split() == [
+        *("1", "walk", "in", "place")
+    ]
+    assert looking.ask("document.querySelector('#counts').textContent") == "2: squat 1"
+    assert "person 2, front or back" in looking.ask(
+        "document.querySelector('#views canvas').getAttribute('aria-label')"
+    )
+    looking.ask("document.querySelector('#everyone li:nth-child(2) button').click()")
+    assert looking.until("document.querySelector('#name').textContent === 'squat'")
+    assert looking.ask("document.querySelector('#words').textContent") == "person 2: tracking"
+    assert looking.ask("document.documentElement.scrollWidth <= innerWidth"), "it is too wide"
+
+
+LISTED: Final = (
+    "[...document.querySelectorAll('#everyone button')]"
+    ".map((row) => [...row.children].map((each) => each.textContent).join(' ')).join('|')"
+)
+"""The list of people in words."""
+AWAY: Final = (
+    "[...document.querySelectorAll('#everyone .away')].map((e) => e.dataset.person).join()"
+)
+"""The numbers of those who are grey in it."""
+
+
+@pytest.mark.slow
+def test_a_person_who_is_lost_or_gone_is_grey_and_leaves_the_list_after_a_second(
+    page: LivePage, looking: Looking
+) -> None:
+    both = two_at(0)
+    (other,) = both.others
+    body = msgspec.structs.replace(other.body, status="lost", pose=(), joints_px=())
+    lost = msgspec.structs.replace(other, body=body)
+    page.show(both)
+    page.show(msgspec.structs.replace(two_at(1), others=(lost,)))
+    assert looking.until(f"document.body.dataset.frame === '1' && {AWAY} === '2'")
+    assert looking.ask(LISTED).endswith("|2 squat lost, searching")
+    page.show(msgspec.structs.replace(two_at(14), others=()))
+    assert looking.until("document.body.dataset.frame === '14'")
+    assert looking.ask(LISTED) == "1 walk in place tracking|2 no posture yet gone"
+    assert looking.ask(AWAY) == "2"
+    looking.drawn()
+    assert share_like(looking.seen("#room"), PEOPLE[1]) < 0.001, "the gone person is drawn"
+    page.show(msgspec.structs.replace(two_at(17), others=()))
+    assert looking.until("document.body.dataset.frame === '17'")
+    assert looking.ask(LISTED) == "1 walk in place tracking"
+    looking.key("Home", 36)
+    assert looking.until(f"{LISTED}.includes('|2 squat tracking')"), "the past has both"
+
+
 @pytest.mark.slow
 def test_pictures_and_body_move_an_event_appears_and_the_end_is_played(
     page: LivePage, looking: Looking
 ) -> None:
-    over = Performance("squat", 3, 9, 0.2, 0.6, 1.0, 1)
-    gone_on = Performance("squat", 3, 12, 0.2, 0.8, 1.0, 2)
+    over = ended(Performance("squat", 3, 9, 0.2, 0.6, 1.0, 1))
+    gone_on = ended(Performance("squat", 3, 12, 0.2, 0.8, 1.0, 2))
     events = {9: [over], 12: [gone_on]}
     for frame in range(30):
         page.show(snapshot_at(frame), events.get(frame, []))

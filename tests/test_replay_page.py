@@ -24,7 +24,7 @@ from test_replaying import body_at, made_up, run, said_at
 from animator.page.live import LivePage
 from animator.scene import Snapshot
 from common.bus.control_messages import Cameras
-from common.bus.messages import Performance, Posture
+from common.bus.messages import Body, Performance, Posture
 from common.rig.camera import Rig
 from runtime.store.past_run import open_run
 from runtime.store.recording import read_recording
@@ -96,9 +96,10 @@ class Shown:
     def set_rig(self, rig: Rig) -> None:
         self.said.append(rig)
 
-    def show(self, snapshot: Snapshot, events: tuple[Performance, ...]) -> None:
+    def show(self, snapshot: Snapshot, ended: list[Posture]) -> None:
         seen = sorted(snapshot.reports)
         told = (snapshot.body and snapshot.body.captured_s, seen, snapshot.performed)
+        events = tuple(posture.event for posture in ended)
         self.said.append((*told, snapshot.posture and snapshot.posture.name, events))
 
 
@@ -137,6 +138,44 @@ def test_each_body_is_shown_in_its_own_rig_with_what_was_performed_until_then() 
     known = recording._replace(head=msgspec.structs.replace(recording.head, rig=first))
     show(page, known)  # type: ignore[arg-type]
     assert page.said == [first, *shown]
+
+
+def test_the_bodies_of_an_instant_are_one_frame_with_a_posture_for_each() -> None:
+    squat = Performance(name="squat", onset=0, end=1, onset_s=0.0, end_s=0.1, posterior=0.9)
+
+    def posture(person: int, event: Performance | None = None) -> Posture:
+        return Posture(
+            person=person, frame=0, captured_s=0.1, clock_s=0.1, name=f"of {person}", event=event
+        )
+
+    def person(number: int, made_of: tuple[int, int], at_s: float = 0.1) -> Body:
+        return msgspec.structs.replace(body_at(at_s, made_of), person=number)
+
+    recording = made_up(
+        [said_at(1, 1, 0.1), said_at(1, 2, 0.2)],
+        [said_at(2, 1, 0.1), said_at(2, 2, 0.2)],
+        [person(2, (-1, 1)), person(1, (1, -1)), person(2, (2, 2), 0.2)],
+        [],
+    )
+    recording = recording._replace(postures=[posture(1), posture(2, squat)])
+    shown: list[Snapshot] = []
+    ended: list[list[tuple[int, Any]]] = []
+
+    class Kept(Shown):
+        def show(self, snapshot: Snapshot, postures: list[Posture]) -> None:
+            shown.append(snapshot)
+            ended.append([(posture.person, posture.event) for posture in postures])
+
+    assert show(Kept(), recording) == 2  # type: ignore[arg-type]
+    first, second = shown
+    assert first.body is not None
+    assert first.posture is not None
+    assert (first.body.person, first.posture.name, sorted(first.reports)) == (1, "of 1", [1, 2])
+    (other,) = first.others
+    assert (other.body.person, other.posture, other.performed) == (2, posture(2, squat), "squat")
+    assert ended == [[(2, squat)], []]
+    assert second.body is not None
+    assert (second.body.person, second.posture, second.performed) == (2, None, "squat")
 
 
 def test_a_recording_is_played_until_ctrl_c_and_its_page_closed(

@@ -1,5 +1,6 @@
 """The shapes in the room, held against the body's own geometry and the cameras' (P55)."""
 
+import cv2
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -9,6 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from animator.scene import (
     LEFT,
+    PEOPLE,
     RIGHT,
     TRUNK,
     Figure,
@@ -146,3 +148,24 @@ def test_a_body_without_pose_or_measures_is_not_drawn() -> None:
         frame=0, captured_s=0.0, clock_s=0.0, status="tracking", views="1", pose=tuple(rest_pose())
     )
     assert figure(None) is figure(nobody) is figure(unmeasured) is None
+
+
+def test_people_are_told_apart_by_the_colour_blind_too() -> None:
+    """Each pair of colours differs by CIE76 far more than is just noticed (2.3), for eyes without
+    red and eyes without green cones. Source of the matrices: Machado, Oliveira & Fernandes 2009."""
+    without_red = [[0.152, 1.053, -0.205], [0.115, 0.786, 0.099], [-0.004, -0.048, 1.052]]
+    without_green = [[0.367, 0.861, -0.228], [0.280, 0.673, 0.047], [-0.012, 0.043, 0.969]]
+    values = np.array(PEOPLE) / 255.0
+    linear = np.where(values > 0.04045, ((values + 0.055) / 1.055) ** 2.4, values / 12.92)
+    for eyes in (np.eye(3), np.array(without_red), np.array(without_green)):
+        seen = np.clip(linear @ eyes.T, 0.0, 1.0)
+        coded = np.where(seen > 0.0031308, 1.055 * seen ** (1 / 2.4) - 0.055, 12.92 * seen)
+        lab = cv2.cvtColor(coded.astype(np.float32)[None], cv2.COLOR_RGB2LAB)[0]
+        apart = np.linalg.norm(lab[:, None] - lab, axis=-1) + 999.0 * np.eye(len(lab))
+        assert apart.min() > 10.0
+
+
+def test_a_person_of_several_is_wholly_in_one_colour_and_the_seventh_as_the_first() -> None:
+    assert {tuple(colour) for colour in limb_colours(person=2)} == {PEOPLE[1]}
+    assert np.array_equal(limb_colours(person=len(PEOPLE) + 1), limb_colours(person=1))
+    assert len({tuple(colour) for colour in limb_colours()}) == 3, "one person alone has sides"

@@ -7,7 +7,7 @@ import cv2
 import msgspec
 import numpy as np
 import pytest
-from show_page import BDP, RIG, pose_at, snapshot_at
+from show_page import BDP, RIG, pose_at, snapshot_at, two_at
 from staging import changed
 
 from animator.page.page_messages import ShownPosture
@@ -20,9 +20,9 @@ from animator.page.shown import (
     shown_room,
     trust_of,
 )
-from animator.scene import Snapshot
+from animator.scene import PEOPLE, Snapshot
 from common.body.body import ANGLES_IN_POSE
-from common.bus.messages import Agreement, Body, Picture, Posture, View
+from common.bus.messages import Agreement, Body, Performance, Picture, Posture, View
 from common.raster.silhouette_report import mask_of, silhouette_view
 from common.rig.camera import centre
 from common.rig.upright import Upright
@@ -283,3 +283,43 @@ def test_an_outline_of_two_pixels_is_none() -> None:
     corners = np.array(only).reshape(-1, 2)
     assert corners.min(axis=0).tolist() == [4.5, 6.5]
     assert corners.max(axis=0).tolist() == [11.5, 10.5]
+
+
+def test_each_of_several_people_has_a_body_a_colour_and_a_posture_of_their_own() -> None:
+    squat = Performance("squat", 0, 3, 0.0, 0.2, 1.0, 1)
+    seen = two_at(4)
+    ended = [changed_posture(seen.others[0].posture, event=squat)]
+    frame = shown_frame(seen, ended, RIG, 0)
+    assert frame is not None
+    (other,) = frame.others
+    people = [frame, other]
+    assert [one.person for one in people] == [1, 2]
+    assert [one.posture and one.posture.name for one in people] == ["walk_in_place", "squat"]
+    assert [(event.person, event.name) for event in frame.events] == [(2, "squat")]
+    for number, one in enumerate(people):
+        assert one.solids[0][10:] == pytest.approx(PEOPLE[number], abs=23), "paled by a tenth"
+        assert one.solids[0][0] == pytest.approx((-0.7, 0.7)[number], abs=0.02)
+        fit, body = one.views[0], (seen.body, seen.others[0].body)[number]
+        assert fit is not None
+        assert body is not None
+        assert fit.joints[:2] == pytest.approx(body.joints_px[0][0], abs=0.06)
+
+
+def test_a_person_whom_no_camera_shows_now_is_told_without_a_body() -> None:
+    seen = two_at(4)
+    (other,) = seen.others
+    lost = msgspec.structs.replace(other.body, status="lost", pose=(), joints_px=())
+    shown = shown_frame(
+        msgspec.structs.replace(seen, others=(msgspec.structs.replace(other, body=lost),)),
+        (),
+        RIG,
+        0,
+    )
+    assert shown is not None
+    (told,) = shown.others
+    assert (told.person, told.words, told.solids, told.angles) == (2, "lost, searching", [], [])
+
+
+def changed_posture(posture: Posture | None, event: Performance) -> Posture:
+    assert posture is not None
+    return msgspec.structs.replace(posture, event=event)

@@ -1,13 +1,14 @@
 """A recorded run on the live page, as a player: pause, speed, any moment, angles over time."""
 
+from collections import defaultdict
+from itertools import groupby
 from pathlib import Path
 from typing import Final
 
 from rich.console import Console
 
 from animator.page.live import LivePage
-from animator.scene import Snapshot
-from common.bus.instant import Instant
+from animator.scene import snapshot_of
 from common.bus.messages import View
 from common.bus.process import ProcessContext, process
 from common.npz_file import Facts
@@ -50,25 +51,30 @@ def replay_on_page(folder: Path, port: int, console: Console) -> Facts:
 
 
 def show(page: LivePage, recording: Recording) -> int:
-    """Send a page all bodies of a recording, each with its silhouettes and its posture; returns
-    their number."""
+    """Send a page all instants of a recording, each with its bodies, silhouettes and postures;
+    returns their number."""
     rigs: dict[int, Rig | None] = {told.calibration: told.rig for told in recording.cameras}
-    made_of = {body.captured_s: instant for body, instant in instants(recording)}
-    postures = {posture.captured_s: posture for posture in recording.postures}
-    calibration, performed = -1, ""
-    for body in recording.bodies:
-        rig = rigs.get(body.calibration, recording.head.rig)
-        if rig is not None and calibration != body.calibration:
-            calibration = body.calibration
+    made_of = _reports(recording)
+    postures = {(posture.captured_s, posture.person): posture for posture in recording.postures}
+    calibration, shown, performed = -1, 0, dict[int, str]()
+    for at_s, together in groupby(recording.bodies, lambda body: body.captured_s):
+        bodies = sorted(together, key=lambda body: body.person)
+        rig = rigs.get(bodies[0].calibration, recording.head.rig)
+        if rig is not None and calibration != bodies[0].calibration:
+            calibration = bodies[0].calibration
             page.set_rig(rig)
-        posture = postures.get(body.captured_s)
-        event = () if posture is None or posture.event is None else (posture.event,)
-        performed = event[-1].name if event else performed
-        seen = _reports(made_of.get(body.captured_s))
-        page.show(Snapshot(body, seen, {}, posture, performed), event)
-    return len(recording.bodies)
+        at = {body.person: (at_s, body.person) for body in bodies}
+        now = {person: postures[key] for person, key in at.items() if key in postures}
+        ended = [posture for posture in now.values() if posture.event]
+        performed.update((one.person, one.event.name) for one in ended if one.event)
+        page.show(snapshot_of(bodies, now, performed, made_of[at_s]), ended)
+        shown += 1
+    return shown
 
 
-def _reports(instant: Instant | None) -> dict[int, View]:
-    views = () if instant is None else instant.views
-    return {report.viewer: report for report in views if report}
+def _reports(recording: Recording) -> defaultdict[float, dict[int, View]]:
+    """By the time of an instant: the reports that its bodies were made of, by viewer."""
+    found = defaultdict[float, dict[int, View]](dict)
+    for body, instant in instants(recording):
+        found[body.captured_s].update((view.viewer, view) for view in instant.views if view)
+    return found

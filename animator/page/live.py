@@ -15,7 +15,7 @@ from animator.page.page_server import PageServer
 from animator.page.shown import shown_frame, shown_room
 from animator.scene import Snapshot
 from common.bus.control_messages import Answer, Pulse
-from common.bus.messages import Performance
+from common.bus.messages import Posture
 from common.npz_file import Facts
 from common.rig.camera import Rig
 
@@ -73,11 +73,16 @@ class LivePage:
         self._rig = rig
         self._tell(shown_room(rig))
 
-    def show(self, snapshot: Snapshot, events: Sequence[Performance] = ()) -> None:
-        """Send every browser the newest body, once the cameras are known."""
+    def show(self, snapshot: Snapshot, ended: Sequence[Posture] = ()) -> None:
+        """Send every browser the newest bodies, once the cameras are known.
+
+        Args:
+            snapshot: The newest of everything.
+            ended: The postures since the frame before with which a performance ended.
+        """
         if self._rig is None:
             return
-        frame = shown_frame(snapshot, events, self._rig, self._shown)
+        frame = shown_frame(snapshot, ended, self._rig, self._shown)
         if frame is None:
             return
         self._shown += 1

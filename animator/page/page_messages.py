@@ -1,10 +1,11 @@
 """JSON messages between the page's process and a browser."""
 
+from collections.abc import Sequence
 from typing import Final, Literal
 
 import msgspec
 
-from animator.scene import LEFT, RIGHT, TRUNK, Colour
+from animator.scene import LEFT, PEOPLE, RIGHT, TRUNK, Colour
 from common.body.body import ANGLE_NAMES, JOINT_NAMES, LIMBS
 from common.body.extremities import ALL_JOINT_NAMES, EXTREMITY_LINES
 from common.body.kinematics import HEAD
@@ -18,12 +19,9 @@ CYLINDERS: Final = [i for i in range(len(LIMBS)) if i != HEAD]
 Numbers = list[float]
 
 
-class ShownView(msgspec.Struct, frozen=True):
-    """One camera's view, in pixels of its working picture."""
+class ShownFit(msgspec.Struct, frozen=True, kw_only=True):
+    """A person's body in one camera's view, in pixels of its working picture."""
 
-    size: tuple[int, int]
-    outline: list[Numbers]
-    """Contours of the silhouette, each x, y, x, y and so on, pixels."""
     limbs: list[Numbers]
     """Contours of the fitted body, LIMBS order; one behind the camera has none."""
     joints: Numbers
@@ -31,6 +29,14 @@ class ShownView(msgspec.Struct, frozen=True):
     score: float
     sees: str
     """The side of the body that it sees: facade or flank."""
+
+
+class ShownView(ShownFit, frozen=True, kw_only=True):
+    """One camera's view, with the body of the frame's own person."""
+
+    size: tuple[int, int]
+    outline: list[Numbers]
+    """Contours of the silhouette, each x, y, x, y and so on, pixels."""
     hint: str
     """Advice to the user."""
     jpeg: bytes
@@ -49,17 +55,20 @@ class ShownPosture(msgspec.Struct, frozen=True):
     """The likeliest names and their probabilities, best first."""
 
 
-class ShownFrame(msgspec.Struct, frozen=True, tag="frame", tag_field="kind"):
-    """An instant of the run."""
+class ShownEvent(Performance, frozen=True, kw_only=True):
+    """A performance that has ended."""
 
-    number: int
-    """Number of frames shown so far: a late browser may receive one twice."""
-    frame: int
-    time_s: float
+    person: int
+    """Whose it is, as in `ShownPerson`."""
+
+
+class ShownPerson(msgspec.Struct, frozen=True, kw_only=True):
+    """A person at an instant."""
+
+    person: int
+    """Their number; 0: of a run that follows one person, or no person."""
     status: Status
     words: str
-    trust: str
-    """Doubt about the cameras; "" while there is none."""
     from_views: str
     confidence: Numbers
     """Confidence of the joints in the views."""
@@ -68,9 +77,23 @@ class ShownFrame(msgspec.Struct, frozen=True, tag="frame", tag_field="kind"):
     each."""
     angles: Numbers
     """ANGLE_NAMES order, degrees; empty where there is no pose."""
-    views: list[ShownView | None]
+    views: Sequence[ShownFit | None]
     posture: ShownPosture | None
-    events: tuple[Performance, ...]
+
+
+class ShownFrame(ShownPerson, frozen=True, kw_only=True, tag="frame", tag_field="kind"):
+    """An instant of the run, with its person; of several, that of the lowest number."""
+
+    number: int
+    """Number of frames shown so far: a late browser may receive one twice."""
+    frame: int
+    time_s: float
+    trust: str
+    """Doubt about the cameras; "" while there is none."""
+    views: Sequence[ShownView | None]
+    others: list[ShownPerson]
+    """All other people, by number."""
+    events: tuple[ShownEvent, ...]
     """Performances that have ended since the instant before."""
 
 
@@ -113,6 +136,8 @@ class Greeting(msgspec.Struct, frozen=True, tag="hello", tag_field="kind"):
     colours: dict[str, Colour] = msgspec.field(
         default_factory=lambda: {"left": LEFT, "right": RIGHT, "trunk": TRUNK}
     )
+    people: tuple[Colour, ...] = PEOPLE
+    """Colours of the people of a run that follows several, the first person's first."""
     cylinders: int = len(CYLINDERS)
 
 

@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from typing import Final
 
 import cv2
+import msgspec
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -13,13 +14,17 @@ from animator.page.inset import limb_contours, limb_ends
 from animator.page.page_messages import (
     CYLINDERS,
     Numbers,
+    ShownEvent,
+    ShownFit,
     ShownFrame,
+    ShownPerson,
     ShownPosture,
     ShownRoom,
     ShownView,
 )
 from animator.scene import (
     Figure,
+    Known,
     Shapes,
     Snapshot,
     figure,
@@ -33,7 +38,6 @@ from common.body.body import ANGLES_IN_POSE
 from common.body.observation import Facing
 from common.bus.messages import (
     Body,
-    Performance,
     Picture,
     Posture,
     ScaleSource,
@@ -65,34 +69,55 @@ STATUS_WORDS: Final[dict[Status, str]] = {
 
 
 def shown_frame(
-    snapshot: Snapshot, events: Sequence[Performance], rig: Rig, number: int
+    snapshot: Snapshot, ended: Sequence[Posture], rig: Rig, number: int
 ) -> ShownFrame | None:
-    """A body and its context; None where there is no body yet.
+    """The bodies and their context; None where there is no body yet.
 
     Args:
         snapshot: The newest of everything.
-        events: Performances that have ended since the frame before.
+        ended: The postures since the frame before with which a performance ended.
         rig: The run's cameras.
         number: Number of frames shown before.
     """
     body = snapshot.body
     if body is None:
         return None
-    standing = figure(body)
+    first = shown_person(Known(body, snapshot.posture, snapshot.performed), snapshot.reports, rig)
     return ShownFrame(
+        **{**msgspec.structs.asdict(first), "views": _views(snapshot, body, first.views)},
         number=number,
         frame=body.frame,
         time_s=round(body.captured_s, 4),
+        trust=trust_of(body),
+        others=[shown_person(known, snapshot.reports, rig) for known in snapshot.others],
+        events=tuple(
+            ShownEvent(**msgspec.structs.asdict(posture.event), person=posture.person)
+            for posture in ended
+            if posture.event
+        ),
+    )
+
+
+def shown_person(known: Known, reports: Mapping[int, View], rig: Rig) -> ShownPerson:
+    """A person in the room and in each camera's picture.
+
+    Args:
+        known: The person.
+        reports: By viewer: what each camera told.
+        rig: The run's cameras.
+    """
+    body = known.body
+    standing = figure(body)
+    return ShownPerson(
+        person=body.person,
         status=body.status,
         words=STATUS_WORDS[body.status],
-        trust=trust_of(body),
         from_views=body.views,
         confidence=_rounded((*body.confidence, *body.extremities_confidence), 2),
         solids=[] if standing is None else _solids(standing, body),
         angles=_rounded([body.pose[i] for i in ANGLES_IN_POSE], 1) if body.pose else [],
-        views=_views(snapshot, body, standing, rig),
-        posture=shown_posture(snapshot.posture, snapshot.performed),
-        events=tuple(events),
+        views=_fits(reports, body, standing, rig),
+        posture=shown_posture(known.posture, known.performed),
     )
 
 
@@ -146,37 +171,50 @@ def outline_of(report: View) -> list[Numbers]:
     return [_rounded(contour + 0.5, 1) for contour in smooth if len(contour) > 2]
 
 
-def _views(
-    snapshot: Snapshot, body: Body, standing: Figure | None, rig: Rig
-) -> list[ShownView | None]:
+def _fits(
+    reports: Mapping[int, View], body: Body, standing: Figure | None, rig: Rig
+) -> list[ShownFit | None]:
+    """By camera; None for one that told nothing."""
     ends = None if standing is None else limb_ends(standing)
-    views: list[ShownView | None] = []
+    fits: list[ShownFit | None] = []
     for n, camera in enumerate(rig.cameras):
-        report = snapshot.reports.get(n + 1)
-        if report is None:
-            views.append(None)
-            continue
-        limbs = [] if ends is None else limb_contours(camera, ends)
-        views.append(_view(report, body, limbs, snapshot.pictures.get(n + 1)))
-    return views
+        report = reports.get(n + 1)
+        limbs = [] if ends is None or report is None else limb_contours(camera, ends)
+        fits.append(None if report is None else _fit(report, body, limbs))
+    return fits
 
 
-def _view(
-    report: View, body: Body, limbs: Sequence[NDArray[np.float64]], picture: Picture | None
-) -> ShownView:
+def _fit(report: View, body: Body, limbs: Sequence[NDArray[np.float64]]) -> ShownFit:
     own = place_in_rig(report.viewer)
     joints = [
         as_worked_on(np.array(place), report.upright)
         for places in (body.joints_px, body.extremities_px)
         for place in places[own : own + 1]
     ]
-    return ShownView(
-        size=(report.width, report.height),
-        outline=outline_of(report),
+    return ShownFit(
         limbs=[_rounded(contour, 1) for contour in limbs],
         joints=_rounded(np.concatenate(joints) if joints else (), 1),
         score=round(body.score[own], 3),
         sees=FACING_WORDS[body.facing[own]] if body.pose else "",
+    )
+
+
+def _views(
+    snapshot: Snapshot, body: Body, fits: Sequence[ShownFit | None]
+) -> list[ShownView | None]:
+    """The cameras' pictures below the fits of the frame's own person."""
+    views: list[ShownView | None] = []
+    for n, fit in enumerate(fits, 1):
+        picture = snapshot.pictures.get(n)
+        views.append(None if fit is None else _view(snapshot.reports[n], body, fit, picture))
+    return views
+
+
+def _view(report: View, body: Body, fit: ShownFit, picture: Picture | None) -> ShownView:
+    return ShownView(
+        **msgspec.structs.asdict(fit),
+        size=(report.width, report.height),
+        outline=outline_of(report),
         hint=hint(body, report),
         jpeg=b"" if picture is None else picture.jpeg,
     )

@@ -4,6 +4,7 @@ import { Actions } from "./actions.js";
 import { History } from "./history.js";
 import { isLockedOut, LOCKED_OUT } from "./knock.js";
 import { Events, element, showEnding, showHealth, showPosture, showStatus, showTold, showTrust } from "./panel.js";
+import { everyone, People } from "./people.js";
 import { INKS, Plot } from "./plot.js";
 import { Room } from "./room.js";
 import { View } from "./views.js";
@@ -17,7 +18,7 @@ const at = (id) => document.getElementById(id);
 const history = new History();
 const plot = new Plot(at("plot"), history);
 const events = new Events((seconds) => { history.seekTime(seconds); refresh(); });
-let greeting, room, actions, socket;
+let greeting, people, room, actions, socket;
 let views = [];
 let [dirty, plotted, before] = [false, 0, 0];
 
@@ -30,6 +31,8 @@ const heard = {
     greeting = told;
     at("title").textContent = told.title;
     document.title = `${told.title} · tritrack`;
+    people = new People(at("everyone"), told.people, refresh);
+    plot.of = (frame) => people.of(frame);
     room = new Room(at("room"), told.cylinders, told.cameras);
     actions = new Actions(told.commands, (what) => { if (socket.readyState === WebSocket.OPEN) socket.send(JSON.stringify({ what })); });
     chooser(told.angles);
@@ -98,12 +101,16 @@ function draw(now_ms) {
 function show(frame) {
   document.body.dataset.frame = frame.frame;
   document.body.dataset.drawn = Number(document.body.dataset.drawn ?? 0) + 1;
-  views.forEach((view, i) => view.show(frame.views[i] ?? null, frame.confidence, greeting));
-  room.show(frame.solids);
-  showPosture(frame.posture);
-  actions.alone(/^\d$/.test(frame.from_views));
+  people.show(history);
+  const looked = people.of(frame);
+  const coloured = everyone(frame).map((one) => ({ ...one, colour: people.colour(one.person) }));
+  views.forEach((view, i) => view.show(frame.views[i] ?? null, coloured.map((one) => ({ ...one, fit: one.views[i] })), looked.views[i], greeting));
+  room.show(coloured);
+  showPosture(looked, people.colour(looked.person));
+  actions.alone(/^\d$/.test(looked.from_views));
   showTrust(frame.trust);
-  showStatus(history.over ? "over" : frame.status, history.over ? "the run is over: this is its recording" : history.following ? frame.words : `looking back; the run goes on`);
+  const words = looked.person ? `person ${looked.person}: ${looked.words}` : looked.words;
+  showStatus(history.over ? "over" : looked.status, history.over ? "the run is over: this is its recording" : history.following ? words : `looking back; the run goes on`);
   const scrub = at("scrub");
   scrub.max = history.frames.length - 1;
   scrub.value = history.at;
@@ -143,7 +150,7 @@ function chooser(angles) {
 
 function keys(frame) {
   plot.chosen.forEach((angle, i) => {
-    const value = frame?.angles[angle];
+    const value = frame && people.of(frame).angles[angle];
     at("keys").children[i].firstElementChild.textContent = value === undefined ? "–" : `${Math.round(value) || 0}°`; // no -0
   });
 }

@@ -1,7 +1,7 @@
 // The words beside the body: posture, rivals, what was performed, health, the end.
 
 const at = (id) => document.getElementById(id);
-const spoken = (name) => name.replaceAll("_", " ");
+export const spoken = (name) => name.replaceAll("_", " ");
 
 export function element(tag, text, more = {}) {
   return Object.assign(document.createElement(tag), { textContent: text, ...more });
@@ -16,9 +16,11 @@ export function showStatus(status, words) {
   set("words", words);
 }
 
-export function showPosture(posture) {
+export function showPosture({ person, posture }, colour) {
   const doing = posture?.doing ?? "";
   at("posture").classList.toggle("idle", !doing);
+  set("who", person || "");
+  at("who").style.background = colour;
   set("name", spoken(posture?.name ?? "") || "no posture yet");
   set("times", doing && posture.times > 1 ? `× ${posture.times}` : "");
   const rows = [...at("rivals").children];
@@ -48,25 +50,26 @@ function percent(share) {
 export class Events {
   constructor(seek) {
     this.seek = seek;
-    this.last = null;
+    this.last = new Map(); // by person
     this.times = new Map();
   }
 
   add(event) {
-    const goesOn = this.last?.event.name === event.name && this.last.event.onset_s === event.onset_s;
-    const counted = goesOn ? Math.max(1, this.last.event.times) : 0;
-    if (goesOn) this.last.item.remove();
-    this.times.set(event.name, (this.times.get(event.name) ?? 0) + Math.max(1, event.times) - counted);
-    const all = [...this.times].map(([name, times]) => `${spoken(name)} ${times}`);
-    set("counts", all.join(" · "));
-    const button = element("button", spoken(event.name) + (event.times > 1 ? ` × ${event.times}` : ""), { type: "button" });
+    const last = this.last.get(event.person);
+    const goesOn = last?.event.name === event.name && last.event.onset_s === event.onset_s;
+    const counted = goesOn ? Math.max(1, last.event.times) : 0;
+    if (goesOn) last.item.remove();
+    const name = (event.person ? `${event.person}: ` : "") + spoken(event.name);
+    this.times.set(name, (this.times.get(name) ?? 0) + Math.max(1, event.times) - counted);
+    set("counts", [...this.times].map(([each, times]) => `${each} ${times}`).join(" · "));
+    const button = element("button", name + (event.times > 1 ? ` × ${event.times}` : ""), { type: "button" });
     button.append(element("span", `${event.onset_s.toFixed(1)}–${event.end_s.toFixed(1)} s`));
-    button.setAttribute("aria-label", `show ${spoken(event.name)} at ${event.onset_s.toFixed(1)} seconds`);
+    button.setAttribute("aria-label", `show ${name} at ${event.onset_s.toFixed(1)} seconds`);
     button.addEventListener("click", () => this.seek(event.onset_s));
     const item = document.createElement("li");
     item.append(button);
     at("events").prepend(item);
-    this.last = { event, item };
+    this.last.set(event.person, { event, item });
   }
 }
 

@@ -9,7 +9,8 @@ export class Plot {
   constructor(canvas, history) {
     this.canvas = canvas;
     this.history = history;
-    this.chosen = []; // places in a frame's angles
+    this.chosen = []; // places in the angles of a person
+    this.of = (frame) => frame; // the person of a frame
   }
 
   get range() {
@@ -32,7 +33,7 @@ export class Plot {
     pen.clearRect(0, 0, width, height);
     const [from, to] = this.range;
     const first = history.indexAt(from);
-    const frames = history.frames.slice(Math.max(0, first - 1));
+    const frames = history.frames.slice(Math.max(0, first - 1)).map((frame) => ({ time_s: frame.time_s, angles: this.of(frame).angles }));
     const [low, high] = this.extent(frames);
     const x = (seconds) => LEFT_PX + ((seconds - from) / (to - from)) * (width - LEFT_PX);
     const y = (degrees) => 4 + (1 - (degrees - low) / (high - low)) * (height - BOTTOM_PX - 8);

@@ -1,5 +1,7 @@
 // The body in the room, drawn without a graphics card: solids as shaded outlines, the far ones first.
 
+import { badge } from "./views.js";
+
 const SUN = [-0.5, 1.6, 0.9];
 const FLOOR = "#f6f8fa", SHADOW = "#cdd4da", LINE = "207, 214, 221", CAMERA = "#8c96a3";
 const CELL_M = 0.5, CELLS = 9; // of the floor, to each side of the body
@@ -14,7 +16,8 @@ export class Room {
     this.canvas = canvas;
     this.cylinders = cylinders; // so many solids are cylinders, the others balls
     this.names = names; // of the cameras
-    this.solids = [];
+    this.people = [];
+    this.reach_m = 0; // of the people round their middle
     this.cameras = [];
     this.eye = { yaw: 0.6, pitch: 0.2, away_m: 4.6 };
     this.middle = [0, 0.86, 0];
@@ -35,10 +38,14 @@ export class Room {
     eye.away_m = Math.min(12, Math.max(1.5, eye.away_m * nearer));
   }
 
-  show(solids) {
-    this.solids = solids;
-    if (!solids.length) return;
-    for (const axis of [0, 2]) this.middle[axis] += 0.15 * (solids[0][axis] - this.middle[axis]); // keep it in sight, calmly
+  /** Who is there: solids, number and colour of each. */
+  show(people) {
+    this.people = people.filter(({ solids }) => solids.length);
+    if (!this.people.length) return;
+    const places = this.people.map(({ solids }) => solids[0]);
+    const middle = [0, 1, 2].map((axis) => places.reduce((sum, place) => sum + place[axis], 0) / places.length);
+    for (const axis of [0, 2]) this.middle[axis] += 0.15 * (middle[axis] - this.middle[axis]); // keep them in sight, calmly
+    this.reach_m += 0.15 * (Math.max(...places.map(([x, , z]) => Math.hypot(x - middle[0], z - middle[2]))) - this.reach_m);
   }
 
   draw() {
@@ -54,22 +61,31 @@ export class Room {
     const project = this.projection(width, height);
     this.floor(pen, project);
     this.rig(pen, project);
-    const solids = this.solids.map((row, i) => placed(row, i < this.cylinders ? CYLINDER : BALL));
+    const solids = this.people.flatMap((one) => one.solids.map((row, i) => placed(row, i < this.cylinders ? CYLINDER : BALL)));
     pen.fillStyle = SHADOW;
     for (const { points } of solids) fill(pen, hull(points.map((at) => project(cast(at)))));
     const seen = solids.map(({ points, middle, ...more }) => ({ ...more, outline: hull(points.map(project)), depth: project(middle)[2] }));
     seen.sort((a, b) => b.depth - a.depth).forEach((one) => shaded(pen, one, project));
+    for (const { solids: rows, person, colour } of this.people) if (person) this.number(pen, rows[this.cylinders], person, colour, project);
+  }
+
+  /** A person's number above their head, which is the first ball. */
+  number(pen, head, person, colour, project) {
+    const [x, y, z] = head;
+    const [u, v, depth] = project([x, y + head[8] + 0.14, z]);
+    if (depth > 0.1) badge(pen, person, colour, [u, v], 9);
   }
 
   /** From metres to pixels and the distance; what is behind the spectator has none. */
   projection(width, height) {
     const { eye, middle } = this;
+    const away_m = eye.away_m + 2 * this.reach_m;
     const [sy, cy, sp, cp] = [Math.sin(eye.yaw), Math.cos(eye.yaw), Math.sin(eye.pitch), Math.cos(eye.pitch)];
     const focal = (0.5 * Math.min(height, 1.15 * width)) / Math.tan(ANGLE_RAD / 2);
     return ([x, y, z]) => {
       const [a, b, c] = [x - middle[0], y - middle[1], z - middle[2]];
       const toward = a * sy + c * cy;
-      const depth = eye.away_m - (toward * cp + b * sp);
+      const depth = away_m - (toward * cp + b * sp);
       const times = depth > 0.1 ? focal / depth : NaN;
       return [width / 2 + (a * cy - c * sy) * times, height / 2 - (b * cp - toward * sp) * times, depth];
     };

@@ -23,30 +23,30 @@ export class View {
     this.wanted = "";
   }
 
-  /** Draw a view of a frame; null where the camera says nothing. */
-  show(view, confidence, greeting) {
-    this.sees.textContent = view?.sees ? `sees ${view.sees}` : "";
-    this.score.textContent = view?.joints.length ? `fit ${view.score.toFixed(2)}` : "";
+  /** Draw a view of a frame, null where the camera says nothing, with the body of each person: its fit, confidence and colour. */
+  show(view, people, looked, greeting) {
+    this.sees.textContent = looked?.sees ? `sees ${looked.sees}` : "";
+    this.score.textContent = looked?.joints.length ? `fit ${looked.score.toFixed(2)}` : "";
     this.hint.textContent = view ? view.hint : "nothing heard from it";
     this.canvas.setAttribute("aria-label", view
-      ? `${this.name}: ${view.joints.length ? `the person, ${view.sees}` : "nobody"}${view.hint ? `, ${view.hint}` : ""}`
+      ? `${this.name}: ${seen(people)}${view.hint ? `, ${view.hint}` : ""}`
       : `${this.name}: nothing heard from it`);
-    if (view?.jpeg) this.load(view, confidence, greeting);
-    else this.draw(view, confidence, greeting, null);
+    if (view?.jpeg) this.load(view, people, greeting);
+    else this.draw(view, people, greeting, null);
   }
 
   /** A picture is decoded by the browser; the frame is drawn when that is done. */
-  load(view, confidence, greeting) {
+  load(view, people, greeting) {
     const wanted = view;
     this.wanted = wanted;
     const image = new Image();
     image.src = `data:image/jpeg;base64,${view.jpeg}`;
     image.decode().catch(() => null).then(() => {
-      if (this.wanted === wanted) this.draw(view, confidence, greeting, image.naturalWidth ? image : null);
+      if (this.wanted === wanted) this.draw(view, people, greeting, image.naturalWidth ? image : null);
     });
   }
 
-  draw(view, confidence, greeting, picture) {
+  draw(view, people, greeting, picture) {
     this.wanted = view;
     const [width, height] = view ? view.size : [320, 240];
     const times = Math.max(1, Math.min(4, Math.ceil((this.canvas.clientWidth * devicePixelRatio) / width)));
@@ -62,11 +62,38 @@ export class View {
     if (!view) return;
     const pixel = Math.max(1, width / 320); // one as large as it is in a small picture
     silhouette(pen, view.outline, Boolean(picture), pixel);
-    if (!view.joints.length) return;
-    limbs(pen, view.limbs, greeting, pixel);
-    strokes(pen, view.joints, greeting, pixel);
-    joints(pen, view.joints, confidence, greeting, pixel);
+    for (const one of people) if (one.fit?.joints.length) body(pen, one, greeting, pixel);
   }
+}
+
+/** Words for who is seen. */
+function seen(people) {
+  const there = people.filter(({ fit }) => fit?.joints.length);
+  return there.map(({ person, fit }) => `${person ? `person ${person}` : "the person"}, ${fit.sees}`).join("; ") || "nobody";
+}
+
+/** A person: limbs, hands and feet, joints, in their own colour, or one alone in those of the sides. */
+function body(pen, { person, fit, confidence, colour }, greeting, pixel) {
+  const inks = (name) => colour ?? sideColour(name, greeting.colours);
+  limbs(pen, fit.limbs, greeting, inks, pixel);
+  strokes(pen, fit.joints, greeting, inks, pixel);
+  joints(pen, fit.joints, confidence, greeting, inks, pixel);
+  if (!person) return;
+  const top = fit.joints.reduce((best, y, i) => (i % 2 && y < fit.joints[best] ? i : best), 1);
+  badge(pen, person, colour, [fit.joints[top - 1], fit.joints[top] - 9 * pixel], 6 * pixel);
+}
+
+/** A person's number on a disc of their colour. */
+export function badge(pen, number, colour, [x, y], radius) {
+  pen.beginPath();
+  pen.arc(x, y, radius, 0, 2 * Math.PI);
+  pen.fillStyle = colour;
+  pen.fill();
+  pen.font = `600 ${1.5 * radius}px system-ui, sans-serif`;
+  Object.assign(pen, { textAlign: "center", textBaseline: "middle", fillStyle: "#fff", strokeStyle: "#000", lineWidth: radius / 4, lineJoin: "round" });
+  pen.strokeText(number, x, y);
+  pen.fillText(number, x, y);
+  Object.assign(pen, { textAlign: "start", textBaseline: "alphabetic" });
 }
 
 function path(pen, points) {
@@ -90,36 +117,36 @@ export function sideColour(name, colours) {
   return `rgb(${colours[side].join(",")})`;
 }
 
-function limbs(pen, contours, greeting, pixel) {
+function limbs(pen, contours, greeting, inks, pixel) {
   pen.lineWidth = LIMB_WIDTH * pixel * 0.7;
   contours.forEach((points, i) => {
     if (points.length < 6) return;
     pen.beginPath();
     path(pen, points);
-    pen.strokeStyle = sideColour(greeting.limbs[i], greeting.colours);
+    pen.strokeStyle = inks(greeting.limbs[i]);
     pen.stroke();
   });
 }
 
 /** Hands and feet, of a body that tells them. */
-function strokes(pen, places, greeting, pixel) {
+function strokes(pen, places, greeting, inks, pixel) {
   pen.lineWidth = LIMB_WIDTH * pixel * 0.7;
   for (const [from, to] of greeting.strokes) {
     if (places.length <= 2 * Math.max(from, to)) continue;
     pen.beginPath();
     pen.moveTo(places[2 * from], places[2 * from + 1]);
     pen.lineTo(places[2 * to], places[2 * to + 1]);
-    pen.strokeStyle = sideColour(greeting.joints[to], greeting.colours);
+    pen.strokeStyle = inks(greeting.joints[to]);
     pen.stroke();
   }
 }
 
-function joints(pen, places, confidence, greeting, pixel) {
+function joints(pen, places, confidence, greeting, inks, pixel) {
   greeting.joints.slice(0, places.length / 2).forEach((name, i) => {
     const sure = confidence[i] ?? 0;
     pen.beginPath();
     pen.arc(places[2 * i], places[2 * i + 1], (i < greeting.large ? 1.6 + 1.6 * sure : 1.3) * pixel, 0, 2 * Math.PI);
-    pen.fillStyle = sideColour(name, greeting.colours);
+    pen.fillStyle = inks(name);
     pen.strokeStyle = "#fff";
     pen.lineWidth = 0.8 * pixel;
     if (sure >= SURE) pen.fill();
