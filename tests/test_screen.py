@@ -6,6 +6,7 @@ import pytest
 from rich.console import Console
 
 from common.bus.control_messages import Pulse
+from common.bus.messages import Body, Posture
 from common.config.settings import Settings
 from common.video.clip_facts import Clip, ClipView, Meta
 from runtime.live.launch import nothing_heard
@@ -64,6 +65,38 @@ def test_each_piece_of_news_is_told_once_and_the_last_table_stays(seen: Seen) ->
     (row,) = [line for line in lines if line.startswith(" viewer 1")]
     assert row.split()[:4] == ["viewer", "1", "running", "41"]
     assert any("recognizer" in line for line in lines)
+
+
+def told_of(person: int, at_s: float, doing: str) -> tuple[Body, Posture]:
+    moment = {"frame": 0, "captured_s": at_s, "clock_s": at_s, "person": person}
+    body = Body(**moment, status="tracking", views="both")  # type: ignore[arg-type]
+    return body, Posture(**moment, name="", doing=doing)  # type: ignore[arg-type]
+
+
+def test_each_of_several_people_has_a_row_with_their_posture(seen: Seen) -> None:
+    """Those of the newest instant: the third person has left."""
+    seen.news()
+    told = [
+        *(told_of(3, 0.1, "squat"), told_of(1, 0.1, "squat")),
+        *(told_of(1, 0.2, "walk_toward"), told_of(2, 0.2, "")),
+    ]
+    with seen.screen.shown(["viewer 1"]) as show:
+        seen.heard.bodies.add([body for body, _ in told])
+        seen.heard.postures.add([posture for _, posture in told])
+        show(seen.heard)
+    lines = seen.news()
+    at = next(n for n, line in enumerate(lines) if line.split()[:1] == ["person"])
+    rows = [line.split() for line in lines[at + 2 :]]
+    assert rows == [["1", "tracking", "walk", "toward"], ["2", "tracking"]]
+
+
+def test_a_run_that_follows_one_person_has_no_table_of_people(seen: Seen) -> None:
+    with seen.screen.shown(["viewer 1"]) as show:
+        body, posture = told_of(0, 0.1, "squat")
+        seen.heard.bodies.add([body])
+        seen.heard.postures.add([posture])
+        show(seen.heard)
+    assert "person" not in " ".join(seen.news())
 
 
 def test_the_page_is_told_once_it_answers(seen: Seen) -> None:

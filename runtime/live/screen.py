@@ -2,22 +2,28 @@
 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from typing import Final
 
-from rich.console import Console
+from rich.console import Console, Group
 from rich.live import Live as LiveDisplay
 from rich.markup import escape
+from rich.table import Table
 
 from common.bus.control_messages import Pulse
 from common.config.settings import Settings
 from common.video.clip_facts import Clip
 from common.video.clip_sources import camera_words
 from runtime.live.launch import Heard
-from runtime.live.table import table_of
+from runtime.live.table import table_of, table_of_people
 from runtime.terminal import warn
+
+MOST_NEWEST: Final = 32
+"""Number of the newest bodies and postures among which those of the newest instant are: more than
+there are people."""
 
 
 class Screen:
-    """The display of a run: the table of processes, and each piece of news once."""
+    """The display of a run: the tables of processes and people, and each piece of news once."""
 
     def __init__(
         self, clip: Clip, settings: Settings, console: Console, address: Callable[[], str]
@@ -36,19 +42,21 @@ class Screen:
     def shown(self, names: list[str]) -> Iterator[Callable[[Heard], None]]:
         """A function that shows the newest pulses and news; the last ones stay when the run is
         over."""
-        table = table_of(names, {}, self._title, self._cameras)
+        shown = Group(table_of(names, {}, self._title, self._cameras))
         with LiveDisplay(
-            table, console=self._console, refresh_per_second=4, transient=True
+            shown, console=self._console, refresh_per_second=4, transient=True
         ) as display:
 
             def show(heard: Heard) -> None:
-                nonlocal table
+                nonlocal shown
                 self._news(heard)
+                people = _people(heard)
                 table = table_of(names, heard.pulses, self._title, self._cameras)
-                display.update(table)
+                shown = Group(*[table, *([] if people is None else [people])])
+                display.update(shown)
 
             yield show
-        self._console.print(table)
+        self._console.print(shown)
 
     def tell_page(self) -> None:
         """Print the page's address once it answers."""
@@ -70,6 +78,13 @@ class Screen:
         if text not in self._told:
             self._told.add(text)
             warn(self._console, text)
+
+
+def _people(heard: Heard) -> Table | None:
+    """None in a run that follows one person, whose number is 0."""
+    bodies = heard.bodies.newest(lambda body: body.person > 0, MOST_NEWEST)
+    postures = heard.postures.newest(lambda posture: posture.person > 0, MOST_NEWEST)
+    return table_of_people(bodies, postures) if bodies else None
 
 
 def warnings_of(pulses: Mapping[str, Pulse]) -> list[str]:

@@ -1,6 +1,6 @@
 """The live table: a line for each process of a run."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Final
 
 from rich.box import SIMPLE_HEAD
@@ -8,6 +8,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from common.bus.control_messages import Pulse
+from common.bus.messages import Body, Posture
 
 COLUMNS: Final = (
     ("process", "left"),
@@ -47,6 +48,25 @@ def table_of(
         table.add_column(column, justify="left" if side == "left" else "right", no_wrap=True)
     for name in names:
         table.add_row(*_cells(_shown_name(name, cameras), pulses.get(name)))
+    return table
+
+
+def table_of_people(bodies: Sequence[Body], postures: Iterable[Posture]) -> Table:
+    """Status and posture of each person of the newest instant.
+
+    Args:
+        bodies: The newest, of one instant or more, oldest first; at least one.
+        postures: The newest, oldest first.
+    """
+    now = {body.person: body for body in bodies if body.captured_s == bodies[-1].captured_s}
+    judged = {posture.person: posture for posture in postures}
+    table = Table(box=SIMPLE_HEAD, padding=(0, 1, 0, 0))
+    for column in ("person", "status", "posture"):
+        table.add_column(column, no_wrap=True)
+    for person, body in sorted(now.items()):
+        posture = judged.get(person)
+        doing = "" if posture is None else posture.doing.replace("_", " ")
+        table.add_row(str(person), body.status, escape(doing))
     return table
 
 
