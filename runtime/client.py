@@ -7,6 +7,8 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, Generic, TypeVar, overload
 
+import msgspec
+
 from common.body.body import ANGLE_NAMES, JOINT_NAMES, POSE_INDEX
 from common.bus.messages import Body, Message, Posture, View, ViewerNumber
 from common.config.config_file import load
@@ -68,7 +70,7 @@ def track(source: str | Path, views: tuple[ViewerNumber, ...] | None = None) -> 
         return list(track_clip(load(Path(source)), decoders, views).bodies)
 
 
-def load_run(folder: str | Path) -> "PastRun":
+def load_run(folder: str | Path, person: int | None = None) -> "PastRun":
     """Read a run folder: its poses as arrays, its summary.
 
     Examples:
@@ -81,18 +83,28 @@ def load_run(folder: str | Path) -> "PastRun":
 
     Args:
         folder: Written by `tritrack track`, `single` or `live`, complete or cut short.
+        person: Number of the person whose rows to give; None: all rows, `poses["person"]` says
+            whose. The summary is that of the run.
 
     Raises:
-        PastRunError: When it is no run folder, is damaged, or is of a newer version.
+        PastRunError: When it is no run folder, is damaged, is of a newer version, or has no such
+            person.
     """
     from runtime.store.past_run import open_run
+    from runtime.store.run_people import of_person
 
-    return open_run(Path(folder))
+    run = open_run(Path(folder))
+    return run if person is None else of_person(run, person)
 
 
 @overload
 def subscribe(
-    endpoint: str = ENDPOINT, room: str = ROOM, *, wait_s: float = WAIT_S, keys: str = ""
+    endpoint: str = ENDPOINT,
+    room: str = ROOM,
+    *,
+    wait_s: float = WAIT_S,
+    keys: str = "",
+    person: int | None = None,
 ) -> "Subscription[Body]": ...
 @overload
 def subscribe(
@@ -102,14 +114,16 @@ def subscribe(
     kind: type[Said],
     wait_s: float = WAIT_S,
     keys: str = "",
+    person: int | None = None,
 ) -> "Subscription[Said]": ...
 def subscribe(
     endpoint: str = ENDPOINT,
     room: str = ROOM,
     *,
-    kind: type = Body,
+    kind: type[msgspec.Struct] = Body,
     wait_s: float = WAIT_S,
     keys: str = "",
+    person: int | None = None,
 ) -> "Subscription":  # type: ignore[type-arg]
     """Messages of a live run, for `for` and `async for`, until the run is over.
 
@@ -128,12 +142,16 @@ def subscribe(
         wait_s: How long to wait for the run to begin.
         keys: Folder with ca.pem, client.pem and client.key, where the run has keys; the endpoint is
             tls/HOST:PORT then.
+        person: Number of the person whose messages to give; None: everyone's. A View shows all.
 
     Raises:
         SettingsError: When only one of keys and endpoint is of TLS.
+        ValueError: When a person is asked for of a kind that has none.
     """
+    if person is not None and "person" not in kind.__struct_fields__:
+        raise ValueError(f"a {kind.__name__} is of no one person: leave person out")
     bus = BusSettings(endpoint=endpoint, keys=keys, open_to_all=True)
-    return Subscription(kind, bus, room, wait_s)
+    return Subscription(kind, bus, room, wait_s, person)
 
 
 class Subscription(Generic[Said]):
@@ -143,16 +161,24 @@ class Subscription(Generic[Said]):
     It ends with the integrator. It raises BusError when there is no run in time.
     """
 
-    def __init__(self, kind: type[Said], bus: BusSettings, room: str, wait_s: float) -> None:
+    def __init__(
+        self,
+        kind: type[Said],
+        bus: BusSettings,
+        room: str,
+        wait_s: float,
+        person: int | None = None,
+    ) -> None:
         """See `subscribe`."""
         self._kind, self._bus, self._room, self._wait_s = kind, bus, room, wait_s
+        self._person = person
 
     def __iter__(self) -> Iterator[Said]:
         """Subscribe from now on."""
         with ExitStack() as doors:
             ears = self._listen(doors)
             while (message := ears.take()) is not None or not ears.over:
-                if message is not None:
+                if message is not None and self._is_wanted(message):
                     yield message
 
     async def __aiter__(self) -> AsyncIterator[Said]:
@@ -160,8 +186,11 @@ class Subscription(Generic[Said]):
         with ExitStack() as doors:
             ears = await asyncio.to_thread(self._listen, doors)
             while (message := await asyncio.to_thread(ears.take)) is not None or not ears.over:
-                if message is not None:
+                if message is not None and self._is_wanted(message):
                     yield message
+
+    def _is_wanted(self, message: Said) -> bool:
+        return self._person is None or getattr(message, "person", None) == self._person
 
     def _listen(self, doors: ExitStack) -> "_Ears[Said]":
         from common.bus.bus import open_client

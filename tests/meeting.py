@@ -8,6 +8,7 @@ from contextlib import contextmanager
 
 import numpy as np
 from moving import random_joints
+from msgspec.structs import replace
 
 from common.body.body import rest_pose
 from common.body.extremities import extremities
@@ -46,8 +47,10 @@ EARLY = -1
 
 
 @contextmanager
-def saying(frames: int = 120, begin: threading.Event | None = None) -> Iterator[str]:
-    """The endpoint of a hub that says so many bodies, 30 a second.
+def saying(
+    frames: int = 120, begin: threading.Event | None = None, people: tuple[int, ...] = (0,)
+) -> Iterator[str]:
+    """The endpoint of a hub that says so many bodies, 30 a second, of each of these people.
 
     Where there is an event it says an early one over and over until that is set: who hears it is
     there, and will miss none.
@@ -59,11 +62,14 @@ def saying(frames: int = 120, begin: threading.Event | None = None) -> Iterator[
         with open_hub(BusSettings(endpoint), "room") as bus:
             bus.announce("integrator")
             while begin is not None and not begin.is_set() and not over.wait(1 / HZ):
-                bus.publish(a_body(EARLY, joints_m[0]))
+                for person in people:
+                    bus.publish(replace(a_body(EARLY, joints_m[0]), person=person))
             for frame in range(frames):
                 if over.wait(1 / HZ):
                     return
-                bus.publish(a_body(frame, joints_m[frame % len(joints_m)]))
+                for person in people:
+                    row = joints_m[frame % len(joints_m)]
+                    bus.publish(replace(a_body(frame, row), person=person))
 
     thread = threading.Thread(target=say)
     thread.start()

@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import pytest
 from meeting import EARLY, a_body, saying
 from moving import random_joints
@@ -139,3 +140,23 @@ def test_each_body_is_handed_on_in_the_protocol_that_is_asked_for(
     else:
         assert asked[1:] == ["127.0.0.1:9000"]
         assert all(dict(read_osc(packet)).keys() >= {address} for packet in packets)
+
+
+@pytest.mark.parametrize(("protocol", "sent"), [("osc", 4), ("vmc", 2), ("lsl", 2)])
+def test_of_several_people_osc_has_all_and_the_others_the_first(
+    monkeypatch: pytest.MonkeyPatch, protocol: bridging.Protocol, sent: int
+) -> None:
+    bodies = [
+        msgspec.structs.replace(a_body(frame, row), person=person)
+        for frame, row in enumerate(random_joints(2)[:2])
+        for person in (1, 2)
+    ]
+    packets: list[Any] = []
+    monkeypatch.setattr(bridging, "subscribe", lambda *_, **__: iter(bodies))
+    monkeypatch.setattr(bridging, "osc_sender", lambda _: packets.append)
+    monkeypatch.setattr(bridging, "lsl_outlet", lambda: packets.append)
+    heard = Console(file=io.StringIO())
+    found = bridging.bridge(protocol, "tcp/10.0.0.1:7447", "attic", "127.0.0.1:9000", heard)
+    assert (found, len(packets)) == (sent, sent)
+    if protocol == "lsl":
+        assert [body.person for body in packets] == [1, 1]

@@ -17,7 +17,7 @@ import tritrack
 from common.bus.bus import BusError
 from common.bus.messages import MOST_VIEWS, Body
 from runtime.offline import lockstep
-from tritrack import subscribe, track
+from tritrack import Posture, View, subscribe, track
 from tritrack.exporting import ExportError
 
 EXAMPLES = Path(__file__).parents[1] / "docs" / "examples"
@@ -46,6 +46,23 @@ def test_a_loop_hears_every_body_and_ends_with_the_run() -> None:
             frames.append(body.frame)
             begin.set()
     assert [frame for frame in frames if frame != EARLY] == list(range(20))
+
+
+def test_a_loop_of_one_person_hears_their_bodies_alone() -> None:
+    heard: list[tuple[int, int]] = []
+    begin = threading.Event()
+    with saying(20, begin, people=(1, 2, 3)) as endpoint:
+        for body in subscribe(endpoint, wait_s=5.0, person=2):
+            heard.append((body.person, body.frame))
+            begin.set()
+    assert {person for person, _ in heard} == {2}
+    assert [frame for _, frame in heard if frame != EARLY] == list(range(20))
+
+
+def test_one_person_of_views_that_show_everyone_is_refused() -> None:
+    with pytest.raises(ValueError, match="a View is of no one person: leave person out"):
+        subscribe(kind=View, person=2)
+    assert subscribe(kind=Posture, person=2)
 
 
 def test_an_async_loop_hears_them_too_and_lets_others_run() -> None:

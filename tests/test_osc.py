@@ -5,6 +5,7 @@ import os
 import socket
 import sys
 
+import msgspec
 import pytest
 from meeting import a_body
 from moving import random_joints
@@ -25,6 +26,17 @@ def test_a_packet_has_every_joint_and_angle_by_name() -> None:
     assert by_name["/tritrack/frame"] == [7, body.captured_s, body.clock_s, "tracking"]
     assert by_name["/tritrack/joint/l_wrist"] == pytest.approx([*body.joints_m[5], 0.5], abs=1e-6)
     assert by_name["/tritrack/angle/l_shoulder_z"] == pytest.approx([180.0])
+
+
+def test_each_of_several_people_has_addresses_of_their_own() -> None:
+    alone = a_body(7, random_joints(3)[0])
+    second = msgspec.structs.replace(alone, person=2)
+    expected = [
+        (f"/tritrack/person/2/{address.removeprefix('/tritrack/')}", values)
+        for address, values in read_osc(osc_packet(alone))
+    ]
+    assert read_osc(osc_packet(second)) == expected
+    assert expected[1][0] == "/tritrack/person/2/joint/pelvis"
 
 
 def test_nobody_is_told_by_the_frame_alone() -> None:

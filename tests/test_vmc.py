@@ -132,3 +132,15 @@ def test_a_packet_begins_with_that_all_is_well_its_time_and_a_root_at_rest() -> 
     assert [*said[0][1]] == [1]
     assert said[1][1][0] == pytest.approx(a_body(9, random_joints(2)[0]).captured_s)
     assert [*said[2][1]] == ["root", 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]
+
+
+def test_another_person_has_a_skeleton_of_their_own() -> None:
+    """Of a body twice as large, as if nobody had been before."""
+    rows, state = random_joints(3), Measured()
+    for frame, row in enumerate(rows):
+        first = msgspec.structs.replace(a_body(frame, row), person=1)
+        state, _ = step(state, first)
+    large = msgspec.structs.replace(a_body(9, 2 * rows[0]), person=2)
+    _, packet = step(state, large)
+    _, alone = step(Measured(), large)
+    assert packet == alone

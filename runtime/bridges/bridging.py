@@ -9,6 +9,7 @@ from rich.console import Console
 from common.bus.bus_keys import refuse_missing
 from common.bus.messages import Body
 from runtime.bridges import vmc
+from runtime.bridges.first_person import of_first
 from runtime.bridges.lsl import lsl_outlet
 from runtime.bridges.osc import osc_packet, osc_sender
 from runtime.client import WAIT_S, Subscription, subscribe
@@ -20,7 +21,7 @@ Protocol = Literal["osc", "vmc", "lsl"]
 def bridge(
     protocol: Protocol, endpoint: str, room: str, to: str, console: Console, keys: str = ""
 ) -> int:
-    """Forward every body; returns their number.
+    """Forward every body, by VMC and LSL the first person's alone; returns their number.
 
     Args:
         protocol: Name of the protocol.
@@ -42,7 +43,7 @@ def bridge(
     if protocol == "lsl":
         push, sent = lsl_outlet(), 0
         say(console, waits)
-        for body in bodies:
+        for body in of_first(bodies):
             push(body)
             sent += 1
         return sent
@@ -53,7 +54,7 @@ def bridge(
 
 def _by_osc(protocol: Protocol, bodies: Subscription[Body], send: Callable[[bytes], None]) -> int:
     state, sent = vmc.Measured(), 0
-    for body in bodies:
+    for body in of_first(bodies) if protocol == "vmc" else bodies:
         packet: bytes | None = None
         if protocol == "vmc":
             state, packet = vmc.step(state, body)

@@ -16,16 +16,20 @@ class BridgeError(RuntimeError):
 
 
 def osc_packet(body: Body) -> bytes:
-    """A bundle of a body's numbers; joints and angles only where it has a pose."""
+    """A bundle of a body's numbers; joints and angles only where it has a pose.
+
+    Of several people each has addresses of their own: /tritrack/person/2/joint/l_wrist.
+    """
     from pythonosc.osc_bundle_builder import IMMEDIATELY, OscBundleBuilder
 
     bundle: Any = OscBundleBuilder(IMMEDIATELY)
+    root = f"/tritrack/person/{body.person}" if body.person > 0 else "/tritrack"
     told = [body.frame, body.captured_s, body.clock_s, body.status]
-    bundle.add_content(message("/tritrack/frame", told, "idds"))
+    bundle.add_content(message(f"{root}/frame", told, "idds"))
     for name, place_m, sure in zip(JOINT_NAMES, body.joints_m, body.confidence, strict=False):
-        bundle.add_content(message(f"/tritrack/joint/{name}", [*place_m, sure], "ffff"))
+        bundle.add_content(message(f"{root}/joint/{name}", [*place_m, sure], "ffff"))
     for name, i in zip(ANGLE_NAMES, ANGLES_IN_POSE, strict=True) if body.pose else ():
-        bundle.add_content(message(f"/tritrack/angle/{name}", [body.pose[i]], "f"))
+        bundle.add_content(message(f"{root}/angle/{name}", [body.pose[i]], "f"))
     packet: bytes = bundle.build().dgram
     return packet
 

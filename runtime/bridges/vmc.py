@@ -41,12 +41,16 @@ class Measured(NamedTuple):
     skeleton: Skeleton | None = None
     before: Before | None = None
     """Twists of the limbs in the body before, which straight limbs keep."""
+    person: int = 0
+    """The number of the person whose skeleton it is."""
 
 
 def step(state: Measured, body: Body) -> tuple[Measured, bytes | None]:
-    """The packet of a body; None where it has no pose."""
+    """The packet of a body; None where it has no pose. Another person has a skeleton anew."""
     if not body.joints_m:
         return state, None
+    if body.person != state.person:
+        state = Measured(person=body.person)
     joints_m = np.array((*body.joints_m, *body.extremities_m))
     if state.skeleton is None or len(state.poses) < MEASURED:
         poses = (*state.poses, joints_m)
