@@ -3,6 +3,7 @@
 import json
 from typing import Any
 
+import msgspec
 import pytest
 
 from common.body.body import ANGLE_NAMES, ANGLES_IN_POSE, JOINT_NAMES, LIMB_ENDS
@@ -53,6 +54,16 @@ def test_a_figure_has_a_line_for_each_limb_and_a_ball_for_each_joint() -> None:
     unsure, sure = (entity["spheres"][n]["color"] for n in (0, -1))
     assert sure == lines["color"] == {"r": 0.0, "g": 0.8, "b": 0.3, "a": 1.0}
     assert unsure == {"r": 0.5, "g": pytest.approx(0.55), "b": 0.3, "a": 1.0}
+
+
+def test_each_of_several_people_is_a_figure_that_goes_when_they_are_gone() -> None:
+    alone, second = somebody(), msgspec.structs.replace(somebody(), person=2)
+    (entity,), (other,) = (json.loads(scene_of(one))["entities"] for one in (alone, second))
+    assert (entity["id"], entity["lifetime"]) == ("body", {"sec": 0, "nsec": 0})
+    assert (other["id"], other["lifetime"]) == ("body 2", {"sec": 0, "nsec": 500_000_000})
+    lost = json.loads(scene_of(body(person=2)))
+    assert [gone["id"] for gone in lost["deletions"]] == ["body 2"]
+    assert json.loads(numbers_of(second))["person"] == 2
 
 
 def test_who_has_no_hands_and_feet_is_drawn_without_and_nobody_is_taken_away() -> None:

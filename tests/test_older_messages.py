@@ -22,7 +22,7 @@ from common.config.config_file import load
 from common.config.renamed_settings import RenamedSetting, settings_of
 from common.raster.silhouette_report import unpack
 from common.rig.camera import project
-from lab.accuracy.tracking_evaluation import _case
+from lab.accuracy.tracking_evaluation import _cases
 from runtime.store.journal import HEAD, NAME, framed
 from runtime.store.older_messages import read_message
 from runtime.store.past_journal import read_journal
@@ -200,7 +200,8 @@ def test_its_run_is_evaluated_against_a_truth(tmp_path: Path) -> None:
         names = poses["joint_names"]
     present = np.isfinite(joints_m).all(axis=(1, 2))
     np.savez(tmp_path / "truth.npz", present=present, joints3d=joints_m, joint_names=names)
-    case = _case(RUN, tmp_path, None, None)
+    cases, _ = _cases(RUN, tmp_path, None, None)
+    case = cases[""]
     assert case.settings.mode == "default"
     assert len(case.compared.frames) == FRAMES - EMPTY
     assert case.compared.off_mm == pytest.approx(100.0)

@@ -20,6 +20,8 @@ RADIUS_M: Final = 0.05
 LINE_LIST: Final = 2
 _NUMBER: Final = {"type": "number"}
 _ZERO: Final = {"sec": 0, "nsec": 0}
+LIFETIME_S: Final = 0.5
+"""How long the figure of one of several people stays without a newer one: who is gone has none."""
 _STILL: Final = {
     "position": {"x": 0.0, "y": 0.0, "z": 0.0},
     "orientation": {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0},
@@ -34,10 +36,11 @@ def scene_of(body: Body) -> bytes:
     """A SceneUpdate as JSON: lines between a body's joints and to the ends of hands and feet, and
     balls at the 15 joints coloured by confidence.
 
-    A body without a pose removes the figure.
+    A body without a pose removes the figure. Each of several people has a figure of their own.
     """
+    figure = f"body {body.person}" if body.person > 0 else "body"
     if not body.joints_m:
-        gone = {"timestamp": time_of(body.captured_s), "type": 0, "id": "body"}
+        gone = {"timestamp": time_of(body.captured_s), "type": 0, "id": figure}
         return msgspec.json.encode({"deletions": [gone], "entities": []})
     places_m = (*body.joints_m, *body.extremities_m)
     drawn = [*_LINES, *(EXTREMITY_LINES if body.extremities_m else [])]
@@ -54,8 +57,8 @@ def scene_of(body: Body) -> bytes:
     entity = {
         "timestamp": time_of(body.captured_s),
         "frame_id": FRAME_ID,
-        "id": "body",
-        "lifetime": _ZERO,
+        "id": figure,
+        "lifetime": time_of(LIFETIME_S) if body.person > 0 else _ZERO,
         "frame_locked": False,
         "metadata": [],
         **{name: [] for name in ("arrows", "cubes", "cylinders", "triangles", "texts", "models")},
@@ -79,7 +82,7 @@ def numbers_of(body: Body) -> bytes:
     angles = {
         name: body.pose[i] for name, i in zip(ANGLE_NAMES, ANGLES_IN_POSE, strict=True) if body.pose
     }
-    told = {"frame": body.frame, "status": body.status, "views": body.views}
+    told = {"frame": body.frame, "person": body.person, "status": body.status, "views": body.views}
     sure = (*body.confidence, *body.extremities_confidence)
     confidence = dict(zip(ALL_JOINT_NAMES, sure, strict=False))
     return msgspec.json.encode(
@@ -122,6 +125,7 @@ def schemas() -> dict[str, bytes]:
     numbers = _object(
         {
             "frame": {"type": "integer"},
+            "person": {"type": "integer"},
             "status": {"type": "string"},
             "views": {"type": "string"},
             "joints_m": _object(dict.fromkeys(ALL_JOINT_NAMES, xyz)),
