@@ -23,7 +23,7 @@ from animator.page.shown import (
 from animator.scene import PEOPLE, Snapshot
 from common.body.body import ANGLES_IN_POSE
 from common.bus.messages import Agreement, Body, Performance, Picture, Posture, View
-from common.raster.silhouette_report import mask_of, silhouette_view
+from common.raster.silhouette_report import mask_of, people_of, silhouette_view
 from common.rig.camera import centre
 from common.rig.upright import Upright
 
@@ -59,11 +59,39 @@ def test_an_outline_filled_is_the_silhouette_again_within_its_smoothing() -> Non
     report = snapshot_at(4).reports[1]
     mask = mask_of(report)
     filled = np.zeros(mask.shape, np.uint8)
-    for points in outline_of(report):
+    for points in outline_of(report.people):
         corners = np.array(points).reshape(-1, 2) - 0.5
         cv2.fillPoly(filled, [np.rint(corners).astype(np.int32)], 1)
     union = np.count_nonzero(mask | (filled > 0))
     assert np.count_nonzero(mask & (filled > 0)) > 0.95 * union
+
+
+def test_the_outlines_of_people_who_overlap_are_those_of_their_union() -> None:
+    """Two squares of 20 pixels that share a corner's 10: no hole where both are. The contour goes
+    through the centres of pixels, so a square of n has an area of (n - 1)^2."""
+    masks = np.zeros((2, 60, 80), np.bool_)
+    masks[0, 10:30, 10:30] = masks[1, 20:40, 20:40] = True
+    (points,) = outline_of([*people_of(masks[0]), *people_of(masks[1])])
+    area = cv2.contourArea(np.array(points, np.float32).reshape(-1, 2))
+    assert area == pytest.approx(2 * 19**2 - 9**2, abs=2)
+    assert outline_of([]) == []
+
+
+@pytest.mark.parametrize(("number", "shown"), [(0, 1), (1, 2)])
+def test_the_outlines_are_of_everyone_where_several_are_followed(number: int, shown: int) -> None:
+    seen = snapshot_at(4)
+    assert seen.body is not None
+    masks = np.zeros((2, 60, 80), np.bool_)
+    masks[0, 10:30, 10:30] = masks[1, 10:30, 40:60] = True
+    report = msgspec.structs.replace(
+        silhouette_view(1, masks[0], 4), people=(*people_of(masks[0]), *people_of(masks[1]))
+    )
+    body = msgspec.structs.replace(seen.body, person=number)
+    frame = shown_frame(Snapshot(body, {1: report}), (), RIG, 0)
+    assert frame is not None
+    (view, _) = frame.views
+    assert view is not None
+    assert len(view.outline) == shown
 
 
 def test_a_frame_tells_both_views_the_solids_and_the_joints() -> None:
@@ -279,7 +307,7 @@ def test_an_outline_of_two_pixels_is_none() -> None:
     mask = np.zeros((12, 16), np.bool_)
     mask[2, 3:5] = True
     mask[6:11, 4:12] = True
-    (only,) = outline_of(silhouette_view(1, mask))
+    (only,) = outline_of(people_of(mask))
     corners = np.array(only).reshape(-1, 2)
     assert corners.min(axis=0).tolist() == [4.5, 6.5]
     assert corners.max(axis=0).tolist() == [11.5, 10.5]

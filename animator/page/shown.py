@@ -35,7 +35,7 @@ from animator.scene import (
     viewpoint,
 )
 from common.body.body import ANGLES_IN_POSE
-from common.body.observation import Facing
+from common.body.observation import Facing, Observation
 from common.bus.messages import (
     Body,
     Picture,
@@ -45,7 +45,7 @@ from common.bus.messages import (
     View,
     place_in_rig,
 )
-from common.raster.silhouette_report import mask_of
+from common.raster.silhouette_report import unpack
 from common.rig.camera import Camera, Rig
 from common.rig.upright_camera import as_worked_on
 
@@ -163,9 +163,12 @@ def probabilities(log_likelihoods: Mapping[str, float]) -> dict[str, float]:
     return {name: weight / total for name, weight in weights.items()}
 
 
-def outline_of(report: View) -> list[Numbers]:
-    """The contours of a silhouette, holes too, in pixels: a pixel's centre is (0.5, 0.5)."""
-    mask = mask_of(report).astype(np.uint8)
+def outline_of(people: Sequence[Observation]) -> list[Numbers]:
+    """The contours of what people cover together, holes too, in pixels: a pixel's centre is
+    (0.5, 0.5)."""
+    if not people:
+        return []
+    mask = np.logical_or.reduce([unpack(seen) for seen in people]).astype(np.uint8)
     found, _ = cv2.findContours(mask, cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)
     smooth = [cv2.approxPolyDP(contour, SMOOTH_PX, True) for contour in found]
     return [_rounded(contour + 0.5, 1) for contour in smooth if len(contour) > 2]
@@ -214,7 +217,7 @@ def _view(report: View, body: Body, fit: ShownFit, picture: Picture | None) -> S
     return ShownView(
         **msgspec.structs.asdict(fit),
         size=(report.width, report.height),
-        outline=outline_of(report),
+        outline=outline_of(report.people if body.person else report.people[:1]),
         hint=hint(body, report),
         jpeg=b"" if picture is None else picture.jpeg,
     )
