@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import cv2
+import msgspec
 import numpy as np
 import pytest
 
@@ -19,6 +20,7 @@ from common.rig.rig_file import CalibrationError, load_rig
 from common.video.pictures import Image
 from runtime.offline.lockstep import Decoders, track_clip
 from runtime.overrides import overridden
+from synth.scene.scene_clips import SceneSet, write_scenes
 from synth.write import ClipSet, write_set
 from tritrack import Body, Tracker
 
@@ -341,3 +343,33 @@ def test_a_picture_of_another_shape_is_refused_and_costs_nothing() -> None:
 def test_its_example_is_true() -> None:
     failed, tried = doctest.testmod(runtime.steps.tracker)
     assert (failed, tried > 4) == (0, True)
+
+
+def test_everyone_is_followed_in_a_loop_with_numbers_and_postures(tmp_path: Path) -> None:
+    """The bodies of `tritrack track --people all`, bit for bit; each has a posture."""
+    folder = tmp_path / "clips"
+    (scene,) = write_scenes(folder, SceneSet(2, 3.0, seed=11), (160, 120))
+    settings = overridden(Settings(clip=str(scene), size="160x120"), None, None, people="all")
+    empty = [next(pictures(scene / f"cam{n}.avi")) for n in (1, 2)]
+    named = {f"cam{n}": CameraSettings(background=str(tmp_path / f"{n}.png")) for n in (1, 2)}
+    for n, picture in zip((1, 2), empty, strict=True):
+        cv2.imwrite(str(tmp_path / f"{n}.png"), picture)
+    with Decoders() as decoders:
+        due = list(track_clip(msgspec.structs.replace(settings, cameras=named), decoders).bodies)
+    tracker = Tracker(folder / "calibration.json", size="160x120", background=empty, people="all")
+    found: list[Body] = []
+    for count, images in enumerate(
+        zip(*(pictures(scene / f"cam{n}.avi") for n in (1, 2)), strict=True)
+    ):
+        bodies = tracker.step(list(images), count / 15.0)
+        assert [one.person for one in tracker.postures] == [body.person for body in bodies]
+        found += bodies
+    assert [body.joints_m for body in found] == [body.joints_m for body in due]
+    assert {body.person for body in found} == {0, 1, 2}
+
+
+def test_everyone_takes_a_calibration_and_is_a_word() -> None:
+    with pytest.raises(SettingsError, match="to follow everyone takes a calibration"):
+        Tracker(people="all")
+    with pytest.raises(SettingsError, match='people must be 1 or "all", got 2'):
+        Tracker(people=2)  # type: ignore[arg-type]

@@ -16,7 +16,8 @@ if TYPE_CHECKING:
         subscribe,
         track,
     )
-    from runtime.steps.tracker import Bodies, Tracker
+    from runtime.steps.loop_bodies import Bodies
+    from runtime.steps.tracker import Tracker
     from tritrack.exporting import export
 
 __all__ = [

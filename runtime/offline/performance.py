@@ -171,10 +171,9 @@ def _stepped(
 
 
 def _of_one(reports: dict[int, View], merged: Merged) -> dict[int, View]:
-    """The reports, with one person alone where several are followed."""
-    if not merged.bodies[0].person:
-        return reports
-    return {view.viewer: view for view in merged.of_first.views if view is not None}
+    """The reports that are evidence about the rig: none where several people are known, as of two
+    who are close one view may have shown the other for a moment."""
+    return reports if len(merged.bodies) == 1 else {}
 
 
 def _saved(

@@ -1,18 +1,15 @@
 """tritrack in a program's own loop: images in, bodies out, in this process."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Final, Literal, NamedTuple
 
-import msgspec
 import numpy as np
 
 from common.bus.messages import Body, Guide, Posture, ViewerNumber
 from common.config.part_settings import BodySettings, SettingsError, SilhouetteSettings
 from common.config.picture_size import size_of
-from common.config.settings import Settings
-from common.method import METHODS, Mode
-from common.npz_file import Facts
+from common.method import METHODS
 from common.rig.camera import Rig
 from common.video.clip_facts import Clip, camera_names, uprights_of, whole_rig
 from common.video.pictures import Image
@@ -23,12 +20,14 @@ from integrator.live_rig.rig_solver import SolverAtOnce
 from integrator.merge_state import Start
 from integrator.people import several
 from recognizer import __main__ as recognizer
+from recognizer import everyone
 from runtime.steps.loop_backgrounds import Learns, empty_of, is_enough, plates_of
+from runtime.steps.loop_bodies import Bodies
 from runtime.steps.loop_cameras import cameras_of, clip_of
 from runtime.steps.loop_images import Images, by_viewer, picture_of
+from runtime.steps.loop_settings import People, kind_of, settings_of
 from runtime.steps.one_thread import one_thread
 from runtime.steps.together import joined, looked, viewer_of
-from runtime.store.pose_arrays import poses
 from viewer import track
 from viewer.background.background import Background, learn, unknown
 from viewer.captured_frame import CapturedFrame
@@ -37,30 +36,6 @@ BOUND: Final = "320x240"
 """Default size of the working picture: README's figures are at this size."""
 RATE_HZ: Final = 15.0
 LARGEST_RATE_HZ: Final = 1000.0
-
-
-class Bodies(msgspec.Struct, frozen=True):
-    """The bodies of one instant, to iterate over."""
-
-    people: tuple[Body, ...]
-    cameras: tuple[str, ...] = ()
-    """Names of the rig's cameras."""
-
-    def __iter__(self) -> Iterator[Body]:
-        """Iterate over the bodies."""
-        return iter(self.people)
-
-    def __len__(self) -> int:
-        """Their number; an unseen person counts as one, of status `empty` or `lost`."""
-        return len(self.people)
-
-    def __getitem__(self, place: int) -> Body:
-        """One of them."""
-        return self.people[place]
-
-    def to_numpy(self) -> Facts:
-        """As the arrays of `poses.npz`, one row per body: `joints_m` (n, 15, 3) and so on."""
-        return poses(self.people, self.cameras)
 
 
 class _Going(NamedTuple):
@@ -73,9 +48,9 @@ class _Going(NamedTuple):
     """By camera whose background is known."""
     integrator: several.State
     calibration: LiveCalibration
-    naming: recognizer.State
+    naming: everyone.State[recognizer.State]
     guide: Guide | None = None
-    posture: Posture | None = None
+    postures: tuple[Posture, ...] = ()
     instants: int = 0
     last_s: float | None = None
 
@@ -105,6 +80,7 @@ class Tracker:
         size: str = BOUND,
         mode: Literal["default", "paper"] = "default",
         landmarks: Literal["own", "none"] = "own",
+        people: People = 1,
         background: Images | Literal["none"] | None = None,
         rate_hz: float = RATE_HZ,
         stature_m: float = BodySettings().stature_m,
@@ -118,6 +94,8 @@ class Tracker:
             size: Bound of the working picture, width x height, pixels.
             mode: As `--mode`.
             landmarks: Whether the landmark network is used.
+            people: 1: one person is followed; "all": everyone, with numbers from 1 on as
+                `Body.person`; it takes a calibration.
             background: Images of the empty room, in the form of `step`'s; None: it is learnt from
                 the first half second of images, as for a live camera, without a person; "none":
                 people are seen by the landmark network alone.
@@ -131,14 +109,16 @@ class Tracker:
             ValueError: When `background` lacks an image of a camera. Both errors above are
                 ValueErrors.
         """
-        looks = SilhouetteSettings(background=_kind(background))
-        self._settings = _settings(size, mode, landmarks, stature_m, looks)
+        looks = SilhouetteSettings(background=kind_of(background))
+        self._settings = settings_of(size, mode, landmarks, people, stature_m, looks)
         self._rate_hz = float(rate_hz)
         if not 0.0 < self._rate_hz <= LARGEST_RATE_HZ:
             raise SettingsError(f"rate_hz must be from 0 to {LARGEST_RATE_HZ:g}, got {rate_hz}")
         self._cameras = cameras_of(calibration, cameras)
         if mode == "paper" and len(self._cameras.numbers) > 2:
             raise SettingsError("the paper's mode is for two cameras: name them in cameras")
+        if people == "all" and self._cameras.rig is None:
+            raise SettingsError("to follow everyone takes a calibration: name it")
         numbers = self._cameras.numbers
         self._plates = None
         if background is not None and not isinstance(background, str):
@@ -152,8 +132,13 @@ class Tracker:
 
     @property
     def posture(self) -> Posture | None:
-        """The posture after the last step; None before the first."""
-        return None if self._going is None else self._going.posture
+        """The posture of the first person after the last step; None before the first."""
+        return next(iter(self.postures), None)
+
+    @property
+    def postures(self) -> tuple[Posture, ...]:
+        """The postures after the last step, of each of its bodies."""
+        return () if self._going is None else self._going.postures
 
     def step(self, images: Images, captured_s: float | None = None) -> Bodies:
         """One instant: the image of each camera in, its bodies out.
@@ -211,7 +196,8 @@ class Tracker:
         }
         calibration = LiveCalibration(state, looks=False, solver=SolverAtOnce())
         learns: Learns = {} if viewers else {view.number: () for view in clip.views}
-        return _Going(clip, learns, viewers, several.State(state), calibration, naming)
+        streams = everyone.init(naming)
+        return _Going(clip, learns, viewers, several.State(state), calibration, streams)
 
     def _backgrounds(
         self, clip: Clip, given: Mapping[ViewerNumber, Image]
@@ -239,9 +225,13 @@ class Tracker:
             reports[number] = track.without_person(number, frames[number])
             going = self._learnt(going, number, frames[number].picture)
         integrator, merged = joined(going.integrator, reports, going.calibration)
-        naming, posture = recognizer.step(going.naming, merged.bodies[0])
+        naming, postures = going.naming, list[Posture]()
+        for body in merged.bodies:
+            naming, posture = everyone.step(naming, body, recognizer.step)
+            postures.append(posture)
         going = going._replace(integrator=integrator, guide=merged.guide, naming=naming)
-        after = going._replace(posture=posture, instants=going.instants + 1, last_s=now_s)
+        going = going._replace(postures=tuple(postures))
+        after = going._replace(instants=going.instants + 1, last_s=now_s)
         return after, merged.bodies
 
     def _learnt(self, going: _Going, number: ViewerNumber, picture: Image) -> _Going:
@@ -270,26 +260,3 @@ def _refuse_what_does_not_go_on(
                 f"camera {view.source} gives {image.shape[1]}x{image.shape[0]} pixels, it gave "
                 f"{wide}x{high}: begin anew with another Tracker"
             )
-
-
-def _kind(background: Images | Literal["none"] | None) -> Literal["learnt", "none"]:
-    if not isinstance(background, str):
-        return "learnt"
-    if background != "none":
-        raise SettingsError(f'background must be images, "none" or None, got {background!r}')
-    return background
-
-
-def _settings(
-    size: str, mode: Mode, landmarks: str, stature_m: float, silhouette: SilhouetteSettings
-) -> Settings:
-    if mode not in ("default", "paper"):
-        raise SettingsError(f"mode must be default or paper in a loop of one's own, got {mode!r}")
-    if landmarks not in ("own", "none"):
-        raise SettingsError(f"landmarks must be own or none, got {landmarks!r}")
-    try:
-        body = BodySettings(stature_m=float(stature_m))
-        named = Settings(size=str(size), mode=mode, landmarks=landmarks, body=body)
-        return msgspec.structs.replace(named, silhouette=silhouette)
-    except ValueError as error:
-        raise SettingsError(str(error)) from error
