@@ -11,8 +11,9 @@ from common.bus.messages import Body
 from integrator import merge_state
 
 PELVIS: Final = JOINT_NAMES.index("pelvis")
-NEW_SHARE: Final = 0.1
-"""Weight of an instant in the running mean of the clothes' colours."""
+NEW_SHARE: Final = 0.02
+"""Least weight of an instant in the mean of the clothes' colours: a crossing of half a second, in
+which a view may show another, leaves most of it."""
 CALM: Final = 0.5
 """Weight of an instant in the running mean of the velocity."""
 FASTEST_M_S: Final = 3.0
@@ -44,8 +45,11 @@ class Life(NamedTuple):
     joints_s: float = 0.0
     """When that was."""
     velocity_m_s: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    colours: tuple[float, ...] = ()
-    """Mean colours of their clothes, as `Observation.colours`."""
+    colours: tuple[tuple[float, ...], ...] = ()
+    """For each view, the mean colours of their clothes, as `Observation.colours`; empty: unknown.
+    A camera's own colours differ less than those of two."""
+    coloured: tuple[int, ...] = ()
+    """For each view, the number of instants in it."""
 
     def expected_m(self, now_s: float) -> Places | None:
         """The joints expected at a time; None where the person was never believed."""
@@ -53,6 +57,11 @@ class Life(NamedTuple):
             return None
         ahead_s = min(max(now_s - self.joints_s, 0.0), CARRIED_S)
         return self.joints_m + np.array(self.velocity_m_s) * ahead_s
+
+    def colours_in(self, view: int) -> tuple[float, ...]:
+        """Colours of their clothes in a view, or else in any; empty: unknown."""
+        own = self.colours[view] if self.colours else ()
+        return own or next((each for each in self.colours if each), ())
 
     def unseen_s(self, now_s: float) -> float:
         """How long no view has shown them."""
@@ -77,7 +86,7 @@ def after(life: Life, body: Body, seen: tuple[Observation | None, ...], now_s: f
         old if one is None else now_s for old, one in zip(life.views_s, seen, strict=True)
     )
     life = life._replace(seen_s=now_s, tracks=tracks, views_s=views_s)
-    life = life._replace(colours=_mixed(life.colours, seen))
+    life = _coloured(life, seen)
     if body.status not in {"tracking", "measuring"}:
         return life
     joints_m = np.array(body.joints_m)
@@ -97,12 +106,15 @@ def _velocity(life: Life, joints_m: Places, now_s: float) -> tuple[float, float,
     return x, y, z
 
 
-def _mixed(known: tuple[float, ...], seen: tuple[Observation | None, ...]) -> tuple[float, ...]:
-    """The running mean of the colours."""
-    shown = [one.colours for one in seen if one is not None and one.colours]
-    if not shown:
-        return known
-    now = np.mean(shown, axis=0)
-    if not known:
-        return tuple(now.tolist())
-    return tuple((NEW_SHARE * now + (1.0 - NEW_SHARE) * np.array(known)).tolist())
+def _coloured(life: Life, seen: tuple[Observation | None, ...]) -> Life:
+    """The person with the running means of the colours."""
+    colours = list(life.colours or ((),) * len(seen))
+    counts = list(life.coloured or (0,) * len(seen))
+    for view, one in enumerate(seen):
+        if one is None or not one.colours:
+            continue
+        share = max(1.0 / (counts[view] + 1), NEW_SHARE)
+        before = np.array(colours[view] or one.colours)
+        colours[view] = tuple((before + share * (np.array(one.colours) - before)).tolist())
+        counts[view] += 1
+    return life._replace(colours=tuple(colours), coloured=tuple(counts))

@@ -37,7 +37,7 @@ AWAY: Final = 0.3
 AWAY_S: Final = 0.5
 UNLIKE: Final = 1.0
 """Difference of colours that is a person's own at most, over a wall's light and shadow."""
-COLOUR_COST: Final = 0.3
+COLOUR_COST: Final = 0.5
 """Cost of such a difference."""
 AMONG: Final = 0.5
 """Share of the next best gap below which that of two observations is clearly one person's."""
@@ -45,6 +45,9 @@ WRONG_M: Final = 0.02
 """By how much another's gap must be smaller for two observations not to be of one person."""
 SURE_AFTER: Final = 5
 """Number of instants after which such a mean contradicts what was taken for one person."""
+TAKEN: Final = 0.3
+"""By how much nearer, both together, two people's colours are to each other's clothes than to their
+own where they were taken for each other."""
 NOBODY: Final = 0.3
 """Mean confidence of landmarks below which they show no person; see `integrator/belief.py`."""
 
@@ -113,7 +116,8 @@ def doubles(
         apart_m = max(
             sight_gap_m(rig, people, (a, one[a]), (b, other[b])) for a, b in product(own, theirs)
         )
-        if apart_m < MEETS_M and colour_distance(lives[i].colours, lives[j].colours) < UNLIKE:
+        unlike = colour_distance(lives[i].colours_in(0), lives[j].colours_in(0))
+        if apart_m < MEETS_M and unlike < UNLIKE:
             found.append((i, j))
     return found
 
@@ -128,7 +132,7 @@ def cost_of(camera: Camera, view: int, life: Life, seen: Observation, now_s: flo
         seen: The observation.
         now_s: Capture time.
     """
-    unlike = colour_distance(life.colours, seen.colours)
+    unlike = colour_distance(life.colours_in(view), seen.colours)
     unseen_s = life.unseen_s(now_s)
     is_away = unseen_s > AWAY_S
     if is_away and unlike > UNLIKE:
@@ -142,6 +146,32 @@ def cost_of(camera: Camera, view: int, life: Life, seen: Observation, now_s: flo
         return np.inf
     keeps = KEEPS * (life.tracks[view] == seen.track)
     return max(0.0, 0.5 * far + AWAY * is_away + COLOUR_COST * min(unlike, UNLIKE) - keeps)
+
+
+def exchanged(
+    people: People, lives: Sequence[Life], known: Sequence[Sequence[int]]
+) -> list[tuple[int, int]]:
+    """Pairs of known people, by their places, who wear each other's clothes: they were taken for
+    each other where they crossed."""
+    found = []
+    for (i, one), (j, other) in combinations(enumerate(known), 2):
+        better = [
+            _exchange_gain(lives[i], lives[j], people[view][a], people[view][b], view)
+            for view, (a, b) in enumerate(zip(one, other, strict=True))
+            if a >= 0 and b >= 0
+        ]
+        if better and float(np.mean(better)) > TAKEN:
+            found.append((i, j))
+    return found
+
+
+def _exchange_gain(
+    one: Life, other: Life, first: Observation, second: Observation, view: int
+) -> float:
+    """By how much nearer two observations' colours are to the other person's than to their own."""
+    mine, theirs = one.colours_in(view), other.colours_in(view)
+    own = colour_distance(mine, first.colours) + colour_distance(theirs, second.colours)
+    return own - colour_distance(mine, second.colours) - colour_distance(theirs, first.colours)
 
 
 def off_m(camera: Camera, joints_m: Places, seen: Observation) -> float:

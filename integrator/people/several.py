@@ -31,6 +31,8 @@ ALONE_BORN_S: Final = 1.0
 """The same where one view of several shows them: another may see them soon."""
 CONFIRMED_S: Final = 1.0
 """Time within which a new person must be believed once."""
+SWAPPED_S: Final = 0.4
+"""How long two people must wear each other's clothes to be exchanged back, seconds."""
 KEPT_S: Final = 5.0
 """How long somebody out of sight keeps their number, seconds."""
 ONE_S: Final = 0.5
@@ -53,6 +55,13 @@ class Double(NamedTuple):
     since_s: float
 
 
+class Swap(NamedTuple):
+    """Two people who wear each other's clothes."""
+
+    numbers: tuple[int, int]
+    since_s: float
+
+
 class State(NamedTuple):
     """The integrator's state for any number of people."""
 
@@ -63,6 +72,7 @@ class State(NamedTuple):
     coming: tuple[Coming, ...] = ()
     gaps: tuple[Gap, ...] = ()
     doubles: tuple[Double, ...] = ()
+    swaps: tuple[Swap, ...] = ()
     fresh: int = FIRST
     """The next number that nobody has had."""
 
@@ -109,6 +119,7 @@ def step(
     ]
     if not shown:
         return _without_people(state, instant)
+    shown.sort(key=lambda each: each[0].number)
     first = next((each for each in shown if each[0].seen_s == now_s), shown[0])
     bodies = tuple(body for _, body, _, _ in shown)
     return state._replace(room=first[0].state), Merged(bodies, first[2], first[3])
@@ -148,6 +159,7 @@ def _recognised(
     found = owners.owned(plain, people, state.lives, now_s, gaps)
     pairs = owners.doubles(plain, people, state.lives, found.known)
     state, known = _loosened(state, people, found.known, gaps)
+    state = _themselves(state, owners.exchanged(people, state.lives, known), now_s)
     state, indices = _of_one(state, pairs, known, now_s)
     lives, coming, fresh = list(state.lives), [], state.fresh
     for group in found.groups:
@@ -176,9 +188,24 @@ def _loosened(
     for place, view in owners.mistaken(people, known, gaps):
         life, empty = lives[place], _alone(state.room)
         tracks = tuple(NO_TRACK if n == view else old for n, old in enumerate(life.tracks))
-        lives[place] = life._replace(state=empty, tracks=tracks, joints_m=None, colours=())
+        lives[place] = life._replace(state=empty, tracks=tracks, joints_m=None)
         indices[place] = tuple(-1 if n == view else own for n, own in enumerate(known[place]))
     return state._replace(lives=tuple(lives)), indices
+
+
+def _themselves(state: State, pairs: Sequence[tuple[int, int]], now_s: float) -> State:
+    """The state with the numbers, and the clothes, of those who have worn each other's for long."""
+    lives, swaps = list(state.lives), []
+    before = {one.numbers: one.since_s for one in state.swaps}
+    for i, j in pairs:
+        one, other = lives[i], lives[j]
+        since_s = before.get((one.number, other.number), now_s)
+        if now_s - since_s < SWAPPED_S:
+            swaps.append(Swap((one.number, other.number), since_s))
+            continue
+        lives[i] = one._replace(number=other.number, colours=other.colours, coloured=other.coloured)
+        lives[j] = other._replace(number=one.number, colours=one.colours, coloured=one.coloured)
+    return state._replace(lives=tuple(lives), swaps=tuple(swaps))
 
 
 def _of_one(
