@@ -9,7 +9,7 @@ from crowd_of_two import BLUE, LEFT_M, RED, shown
 from test_owners import life
 
 from common.bus.messages import Body
-from integrator.people.known_life import CARRIED_S, FASTEST_M_S, Life, after
+from integrator.people.known_life import CARRIED_S, FASTEST_M_S, NEW_SHARE, Life, after
 
 SEEN = tuple(shown(LEFT_M, (3, 4), RED))
 
@@ -21,7 +21,7 @@ def body_at(x_m: float, status: Any = "tracking") -> Body:
 
 
 def walking(speed_m_s: float, instants: int = 30) -> Life:
-    known = life(1, LEFT_M)._replace(joints_m=None)
+    known = life(1, LEFT_M)._replace(joints_m=None, colours=())
     for n in range(instants):
         known = after(known, body_at(speed_m_s * n / 15.0), SEEN, n / 15.0)
     return known
@@ -53,10 +53,27 @@ def test_a_view_that_does_not_show_them_leaves_what_it_said_before() -> None:
     assert after(known, body_at(5.0), (None, None), 3.0) is known
 
 
-def test_colours_follow_slowly() -> None:
+def test_colours_are_a_views_own_and_follow_slowly() -> None:
+    known = walking(0.0, 200)
+    assert known.coloured == (200, 200)
+    other = (SEEN[0] and msgspec.structs.replace(SEEN[0], colours=BLUE), None)
+    later = after(known, body_at(0.0), other, 14.0)
+    np.testing.assert_allclose(
+        later.colours_in(0), (1.0 - NEW_SHARE) * np.array(RED) + NEW_SHARE * np.array(BLUE)
+    )
+    assert later.colours_in(1) == pytest.approx(RED)
+
+
+def test_the_first_instants_count_alike() -> None:
     other = tuple(one and msgspec.structs.replace(one, colours=BLUE) for one in SEEN)
-    known = after(walking(0.0), body_at(0.0), other, 2.5)
-    np.testing.assert_allclose(known.colours, 0.9 * np.array(RED) + 0.1 * np.array(BLUE))
+    known = after(walking(0.0, 1), body_at(0.0), other, 0.2)
+    np.testing.assert_allclose(known.colours_in(0), (np.array(RED) + np.array(BLUE)) / 2)
+
+
+def test_colours_of_a_view_that_never_showed_them_are_those_of_another() -> None:
+    known = life(1, LEFT_M)._replace(colours=((), BLUE))
+    assert (known.colours_in(0), known.colours_in(1)) == (BLUE, BLUE)
+    assert known._replace(colours=()).colours_in(0) == ()
 
 
 def test_who_was_never_believed_is_nowhere() -> None:

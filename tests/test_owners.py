@@ -21,6 +21,7 @@ from integrator.people.owners import (
     UNLIKE,
     Owned,
     cost_of,
+    exchanged,
     mistaken,
     off_m,
     owned,
@@ -46,7 +47,7 @@ BOTH = list(zip(FIRST, SECOND, strict=True))
 def life(number: int, place_m: tuple[float, float], colours: tuple[float, ...] = ()) -> Life:
     joints_m = np.asarray(joints(body_vector(PERSON), pose_at(place_m)))
     known = Life(number, ROOM, 0.0, 1.0, (number - 1,) * 2, (1.0, 1.0))
-    return known._replace(joints_m=joints_m, joints_s=1.0, colours=colours)
+    return known._replace(joints_m=joints_m, joints_s=1.0, colours=(colours,) * 2)
 
 
 def gaps_of(people: People, instants: int = 1) -> tuple[Gap, ...]:
@@ -191,6 +192,19 @@ def test_a_look_that_shows_nobody_is_no_stranger() -> None:
 
     people = [[unsure(FIRST[0])], [unsure(FIRST[1])]]
     assert owned_now(people, []).groups == ()
+
+
+def test_who_wear_each_others_clothes_were_taken_for_each_other() -> None:
+    lives = [life(1, LEFT_M, RED), life(2, RIGHT_M, BLUE)]
+    own, crossed = [(0, 0), (1, 1)], [(1, 1), (0, 0)]
+    assert exchanged(BOTH, lives, own) == []
+    assert exchanged(BOTH, lives, crossed) == [(0, 1)]
+    assert exchanged(BOTH, lives, [(1, -1), (0, -1)]) == [(0, 1)]
+    assert exchanged(BOTH, lives, [(1, -1), (-1, 0)]) == [], "never in one view"
+    alike = [life(1, LEFT_M, RED), life(2, RIGHT_M, RED)]
+    assert exchanged(BOTH, alike, crossed) == []
+    mixed = [(1, 0), (0, 1)]
+    assert exchanged(BOTH, lives, mixed) == [], "one view says so, the other not"
 
 
 def test_colours_differ_by_the_mean_of_both_parts() -> None:

@@ -358,9 +358,8 @@ def test_everyone_is_followed_in_a_loop_with_numbers_and_postures(tmp_path: Path
         due = list(track_clip(msgspec.structs.replace(settings, cameras=named), decoders).bodies)
     tracker = Tracker(folder / "calibration.json", size="160x120", background=empty, people="all")
     found: list[Body] = []
-    for count, images in enumerate(
-        zip(*(pictures(scene / f"cam{n}.avi") for n in (1, 2)), strict=True)
-    ):
+    films = [pictures(scene / f"cam{n}.avi") for n in (1, 2)]
+    for count, images in enumerate(zip(*films, strict=True)):
         bodies = tracker.step(list(images), count / 15.0)
         assert [one.person for one in tracker.postures] == [body.person for body in bodies]
         found += bodies

@@ -11,7 +11,7 @@ from common.bus.messages import Body
 from integrator import merge_state
 
 PELVIS: Final = JOINT_NAMES.index("pelvis")
-NEW_SHARE: Final = 0.02
+NEW_SHARE: Final = 0.01
 """Least weight of an instant in the mean of the clothes' colours: a crossing of half a second, in
 which a view may show another, leaves most of it."""
 CALM: Final = 0.5

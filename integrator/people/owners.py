@@ -45,9 +45,11 @@ WRONG_M: Final = 0.02
 """By how much another's gap must be smaller for two observations not to be of one person."""
 SURE_AFTER: Final = 5
 """Number of instants after which such a mean contradicts what was taken for one person."""
-TAKEN: Final = 0.3
-"""By how much nearer, both together, two people's colours are to each other's clothes than to their
-own where they were taken for each other."""
+TAKEN: Final = 0.4
+"""By how much nearer two people's colours are to each other's clothes than to their own, in what
+these differ, where they were taken for each other."""
+ALIKE: Final = 0.1
+"""Difference of colours below which clothes tell nobody apart."""
 NOBODY: Final = 0.3
 """Mean confidence of landmarks below which they show no person; see `integrator/belief.py`."""
 
@@ -168,10 +170,15 @@ def exchanged(
 def _exchange_gain(
     one: Life, other: Life, first: Observation, second: Observation, view: int
 ) -> float:
-    """By how much nearer two observations' colours are to the other person's than to their own."""
+    """By how much nearer two observations' colours are to the other person's than to their own, in
+    what these differ: 1 of two who were taken for each other, -1 else; 0 where they are alike."""
     mine, theirs = one.colours_in(view), other.colours_in(view)
+    between = colour_distance(mine, theirs)
+    if between < ALIKE:
+        return 0.0
     own = colour_distance(mine, first.colours) + colour_distance(theirs, second.colours)
-    return own - colour_distance(mine, second.colours) - colour_distance(theirs, first.colours)
+    others = colour_distance(mine, second.colours) + colour_distance(theirs, first.colours)
+    return (own - others) / (2.0 * between)
 
 
 def off_m(camera: Camera, joints_m: Places, seen: Observation) -> float:

@@ -12,7 +12,8 @@ from common.bus.instant import Instant
 from common.bus.messages import Body, Guide
 from integrator import commands, merge, merge_state
 from integrator.live_rig import rig_change
-from integrator.people import owners
+from integrator.people import corrections, owners
+from integrator.people.corrections import Double, Swap, alone_in
 from integrator.people.known_life import NO_TRACK, Life, after
 from integrator.people.owners import Group
 from integrator.people.sight_gaps import Gap, with_instant
@@ -31,13 +32,8 @@ ALONE_BORN_S: Final = 1.0
 """The same where one view of several shows them: another may see them soon."""
 CONFIRMED_S: Final = 1.0
 """Time within which a new person must be believed once."""
-SWAPPED_S: Final = 0.4
-"""How long two people must wear each other's clothes to be exchanged back, seconds."""
 KEPT_S: Final = 5.0
 """How long somebody out of sight keeps their number, seconds."""
-ONE_S: Final = 0.5
-"""How long two people, each shown by views that do not show the other, must be in one place to be
-one."""
 
 
 class Coming(NamedTuple):
@@ -45,20 +41,6 @@ class Coming(NamedTuple):
 
     tracks: tuple[int, ...]
     """By view, the viewer's number; NO_TRACK: it does not show them."""
-    since_s: float
-
-
-class Double(NamedTuple):
-    """Two people in one place, each shown by views that do not show the other."""
-
-    numbers: tuple[int, int]
-    since_s: float
-
-
-class Swap(NamedTuple):
-    """Two people who wear each other's clothes."""
-
-    numbers: tuple[int, int]
     since_s: float
 
 
@@ -158,9 +140,12 @@ def _recognised(
     gaps = with_instant(state.gaps, plain, people)
     found = owners.owned(plain, people, state.lives, now_s, gaps)
     pairs = owners.doubles(plain, people, state.lives, found.known)
-    state, known = _loosened(state, people, found.known, gaps)
-    state = _themselves(state, owners.exchanged(people, state.lives, known), now_s)
-    state, indices = _of_one(state, pairs, known, now_s)
+    mistaken = owners.mistaken(people, found.known, gaps)
+    lives, known = corrections.loosened(state.lives, found.known, mistaken, state.room)
+    swapped = owners.exchanged(people, lives, known)
+    lives, swaps = corrections.themselves(lives, swapped, state.swaps, now_s)
+    lives, indices, doubles = corrections.of_one(lives, known, pairs, state.doubles, now_s)
+    state = state._replace(lives=tuple(lives), swaps=swaps, doubles=doubles)
     lives, coming, fresh = list(state.lives), [], state.fresh
     for group in found.groups:
         tracks = _tracks(people, group.indices)
@@ -176,57 +161,6 @@ def _recognised(
     return state, indices
 
 
-def _loosened(
-    state: State,
-    people: Sequence[Sequence[Observation]],
-    known: Sequence[tuple[int, ...]],
-    gaps: tuple[Gap, ...],
-) -> tuple[State, list[tuple[int, ...]]]:
-    """The state and the observations in which nobody has one of another: who had is seen by the
-    other views alone from now on, and their pose begins anew."""
-    lives, indices = list(state.lives), list(known)
-    for place, view in owners.mistaken(people, known, gaps):
-        life, empty = lives[place], _alone(state.room)
-        tracks = tuple(NO_TRACK if n == view else old for n, old in enumerate(life.tracks))
-        lives[place] = life._replace(state=empty, tracks=tracks, joints_m=None)
-        indices[place] = tuple(-1 if n == view else own for n, own in enumerate(known[place]))
-    return state._replace(lives=tuple(lives)), indices
-
-
-def _themselves(state: State, pairs: Sequence[tuple[int, int]], now_s: float) -> State:
-    """The state with the numbers, and the clothes, of those who have worn each other's for long."""
-    lives, swaps = list(state.lives), []
-    before = {one.numbers: one.since_s for one in state.swaps}
-    for i, j in pairs:
-        one, other = lives[i], lives[j]
-        since_s = before.get((one.number, other.number), now_s)
-        if now_s - since_s < SWAPPED_S:
-            swaps.append(Swap((one.number, other.number), since_s))
-            continue
-        lives[i] = one._replace(number=other.number, colours=other.colours, coloured=other.coloured)
-        lives[j] = other._replace(number=one.number, colours=one.colours, coloured=one.coloured)
-    return state._replace(lives=tuple(lives), swaps=tuple(swaps))
-
-
-def _of_one(
-    state: State, pairs: Sequence[tuple[int, int]], known: Sequence[tuple[int, ...]], now_s: float
-) -> tuple[State, list[tuple[int, ...]]]:
-    """The state without those who were an older person all along, who gets their observations."""
-    before = {one.numbers: one.since_s for one in state.doubles}
-    numbers = {pair: (state.lives[pair[0]].number, state.lives[pair[1]].number) for pair in pairs}
-    since_s = {pair: before.get(both, now_s) for pair, both in numbers.items()}
-    indices = list(known)
-    gone = {}
-    for (older, younger), begun_s in since_s.items():
-        if now_s - begun_s >= ONE_S and older not in gone:
-            gone[younger] = older
-            indices[older] = tuple(map(max, indices[older], indices[younger]))
-    doubles = tuple(Double(numbers[pair], begun_s) for pair, begun_s in since_s.items())
-    left = [place for place in range(len(state.lives)) if place not in gone]
-    lives = tuple(state.lives[place] for place in left)
-    return state._replace(lives=lives, doubles=doubles), [indices[place] for place in left]
-
-
 def _wait_s(group: Group, state: State) -> float:
     """How long a new person must be shown: not at all where nobody is known and it is clear."""
     if group.is_clear and not state.lives:
@@ -235,25 +169,10 @@ def _wait_s(group: Group, state: State) -> float:
     return BORN_S if shown > 1 or len(group.indices) == 1 else ALONE_BORN_S
 
 
-def _alone(room: merge_state.State) -> merge_state.State:
-    """The integrator's state before it knows anything of a person."""
-    start = merge_state.Start(
-        room.alone, room.scale_source, times=room.times, uprights=room.uprights
-    )
-    fresh = merge_state.init(room.rig, room.period_s, room.settings, room.method, start)
-    return room._replace(
-        person=fresh.person,
-        facing=fresh.facing,
-        same=fresh.same,
-        agreement=fresh.agreement,
-        pair=fresh.pair,
-    )
-
-
 def _born(room: merge_state.State, number: int, tracks: tuple[int, ...], now_s: float) -> Life:
     """A new person, with nothing of another."""
     never = (-math.inf,) * len(tracks)
-    return Life(number, _alone(room), now_s, now_s, tracks, never)
+    return Life(number, alone_in(room), now_s, now_s, tracks, never)
 
 
 def _lived(
