@@ -26,7 +26,7 @@ from common.video.clips import open_clip
 from common.video.decoding import Decoder
 from common.video.frame_cache import FrameCache
 from common.video.pictures import Reader
-from runtime.offline.rig_from_person import sighting_of
+from runtime.offline.rig_from_person import sightings_of
 from synth.motion.motions import performance
 from synth.person.people import person
 from viewer.landmarks.landmark_sources import outside_sources
@@ -58,7 +58,9 @@ def looked_at(paths: list[Path], size: str) -> Iterator[Shown]:
             readers = {view.number: FrameCache(decoders[view.number - 1]) for view in clip.views}
             with outside_sources(settings, clip.views) as sources:
                 method = METHODS["default"]
-                yield Shown(path.name, sighting_of(clip, settings, method, readers, sources))
+                yield Shown(
+                    path.name, sightings_of(clip, settings, method, readers, sources).pair(0, 1)
+                )
 
 
 def made_up(first: int, count: int) -> Iterator[Shown]:

@@ -28,7 +28,7 @@ from common.method import METHODS
 from common.rig.camera import Camera, Rig, as_matrix, as_row, centre
 from common.video.clips import open_clip
 from runtime.offline.lockstep import Decoders
-from runtime.offline.rig_from_person import sighting_of
+from runtime.offline.rig_from_person import sightings_of
 from viewer.landmarks.landmark_sources import outside_sources
 
 Spoiled = Callable[[Camera], Camera]
@@ -108,7 +108,7 @@ def looked_at(folder: Path, decoders: Decoders) -> tuple[Rig, Sighting, float]:
     clip = open_clip(settings, decoders.of[1])
     assert clip.rig is not None
     with outside_sources(settings, clip.views) as sources:
-        seen = sighting_of(clip, settings, METHODS["default"], decoders.of, sources)
+        seen = sightings_of(clip, settings, METHODS["default"], decoders.of, sources).pair(0, 1)
     return clip.rig, seen, clip.every / clip.views[0].fps
 
 

@@ -110,7 +110,8 @@ def test_a_known_person_is_reported_before_the_whole_picture_is_searched(
     state, _ = scene.step(State(), 0.0)
     scene.people.append(standing(250.0))
     due, shown = step(state, frame(0.5), EMPTY, SETTINGS, alone=False)
-    assert (columns(shown), scene.searches) == ([pytest.approx(column(scene.people[0]))], [0.0])
+    assert columns(shown) == [pytest.approx(column(scene.people[0]))]
+    assert scene.searches == [0.0]
     done = searched(due)
     assert len(scene.searches) == 2
     assert done.detected is not None

@@ -359,8 +359,8 @@ def test_everyone_is_followed_in_a_loop_with_numbers_and_postures(tmp_path: Path
     tracker = Tracker(folder / "calibration.json", size="160x120", background=empty, people="all")
     found: list[Body] = []
     films = [pictures(scene / f"cam{n}.avi") for n in (1, 2)]
-    for count, images in enumerate(zip(*films, strict=True)):
-        bodies = tracker.step(list(images), count / 15.0)
+    for n, images in enumerate(zip(*films, strict=True)):
+        bodies = tracker.step(list(images), n / 15.0)
         assert [one.person for one in tracker.postures] == [body.person for body in bodies]
         found += bodies
     assert [body.joints_m for body in found] == [body.joints_m for body in due]
