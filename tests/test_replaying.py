@@ -11,11 +11,14 @@ from typing import Any
 import msgspec
 import numpy as np
 import pytest
+from crowd_of_two import BLUE, LEFT_M, RED, RIGHT_M, Crowd, of_all, shown
 from local_bus import LocalBus
 from rich.console import Console
-from staging import RIG, report
+from staging import PERIOD_S, RIG, report
 
 from common.bus.control_messages import Cameras
+from common.bus.instant import Instant
+from common.bus.message_codec import encode
 from common.bus.messages import Body, Message, Posture, View, ViewerNumber
 from common.config.part_settings import BusSettings, PageSettings
 from common.config.settings import Settings
@@ -26,7 +29,7 @@ from runtime.store.other_run import OtherRun, run_of
 from runtime.store.past_run import open_run
 from runtime.store.recording import Head, Recording, read_recording
 from runtime.store.runs import write_run
-from tritrack.replaying import _rigs, instants, replay_on_bus, replay_run, say
+from tritrack.replaying import _rigs, instants, integrated, replay_on_bus, replay_run, say
 
 pytest.importorskip("mcap", reason="pip install 'tritrack[mcap]'")
 
@@ -76,7 +79,7 @@ def test_a_body_whose_reports_were_lost_is_left_out(run: Path) -> None:
     recording.reports[1].pop(3)
     made_of = list(instants(recording))
     assert len(made_of) == len(recording.bodies) - 1
-    assert all(body.captured_s == pair.newest.captured_s for body, pair in made_of)
+    assert all(bodies[0].captured_s == pair.newest.captured_s for bodies, pair in made_of)
 
 
 def test_a_body_of_one_view_is_made_of_that_view_again_whatever_came_too_late(run: Path) -> None:
@@ -88,6 +91,28 @@ def test_a_body_of_one_view_is_made_of_that_view_again_whatever_came_too_late(ru
     assert made_of[3].views[1] is None
     assert made_of[5].views[0] is None
     assert len(made_of) == len(recording.bodies)
+
+
+def test_everyone_of_a_run_of_several_comes_back_byte_for_byte() -> None:
+    """An empty room, a person, and a second one."""
+    crowd, bodies, made_of = Crowd(), list[Body](), list[Instant]()
+    first, second = shown(LEFT_M, (0, 0), RED), shown(RIGHT_M, (1, 1), BLUE)
+    for people in ([], [first], *[[first, second]] * 8):
+        made_of.append(of_all(crowd.n, people))
+        bodies += crowd.see(*people)
+    reports = tuple([view for pair in made_of if (view := pair.views[n])] for n in (0, 1))
+    head = Head(
+        name="two people",
+        settings=Settings(people="all"),
+        period_s=PERIOD_S,
+        alone=False,
+        rig=RIG,
+        body=None,
+    )
+    again = integrated(Recording(head, reports, bodies, [], []))
+    assert {body.person for body in again.bodies} == {0, 1, 2}
+    assert [encode(body) for body in again.bodies] == [encode(body) for body in bodies]
+    assert again.same == len(bodies)
 
 
 def test_all_that_was_said_is_said_again_in_its_order(run: Path) -> None:
@@ -196,7 +221,7 @@ def test_a_viewer_that_counts_anew_is_told_apart_by_the_moment() -> None:
         body_at(5.3, (3, 8)),
     ]
     found = [*instants(made_up(first, second, bodies, [late]))]
-    assert [body for body, _ in found] == bodies[:4]
+    assert [people for people, _ in found] == [[body] for body in bodies[:4]]
     assert [instant.views[0] for _, instant in found] == [first[0], first[1], first[1], first[1]]
     set_back, as_it_was = found[2][1].views[1], found[3][1].views[1]
     assert set_back is not None

@@ -75,6 +75,6 @@ def show(page: LivePage, recording: Recording) -> int:
 def _reports(recording: Recording) -> defaultdict[float, dict[int, View]]:
     """By the time of an instant: the reports that its bodies were made of, by viewer."""
     found = defaultdict[float, dict[int, View]](dict)
-    for body, instant in instants(recording):
-        found[body.captured_s].update((view.viewer, view) for view in instant.views if view)
+    for bodies, instant in instants(recording):
+        found[bodies[0].captured_s].update((view.viewer, view) for view in instant.views if view)
     return found

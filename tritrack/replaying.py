@@ -4,7 +4,7 @@ import threading
 import time
 from collections import defaultdict, deque
 from collections.abc import Iterator, Sequence
-from itertools import chain
+from itertools import chain, groupby
 from pathlib import Path
 from typing import Final, NamedTuple
 
@@ -20,10 +20,11 @@ from common.bus.rate import wait_until
 from common.config.part_settings import BusSettings
 from common.method import METHODS
 from common.npz_file import Facts
-from integrator import merge, merge_state
+from integrator import merge_state
 from integrator.live_rig.rig_change import set_back, with_rig
 from integrator.measuring import opening_posture
 from integrator.merge_state import Start
+from integrator.people import several
 from runtime.store.other_run import refuse_other, run_of
 from runtime.store.recording import Recording, read_recording
 from runtime.store.runs import write_run
@@ -71,30 +72,37 @@ def integrated(recording: Recording) -> Replayed:
     """The bodies from the recorded reports, at the recorded instants."""
     head = recording.head
     opening = opening_posture.init(head.body)
-    state = merge_state.init(
+    room = merge_state.init(
         head.rig,
         head.period_s,
         head.settings,
         METHODS[head.settings.mode],
         Start(head.alone, head.scale_source, opening, head.times, head.by_person),
     )
+    state = several.State(room)
     rigs = {told.calibration: told.rig for told in recording.cameras}
-    bodies, same = [], 0
+    bodies: list[Body] = []
+    same = 0
     for before, instant in instants(recording):
-        if before.calibration > state.calibration and before.calibration in rigs:
-            state = with_rig(state, rigs[before.calibration])
-        state, body, _guide = merge.step(state, instant)
-        bodies.append(body)
-        same += encode(body) == encode(before)
-    return Replayed(bodies, same, state.scale_source)
+        calibration = before[0].calibration
+        if calibration > state.room.calibration and calibration in rigs:
+            state = several.with_room(state, with_rig(state.room, rigs[calibration]))
+        state, merged = several.step(state, instant)
+        bodies += merged.bodies
+        recorded = {encode(body) for body in before}
+        same += sum(encode(body) in recorded for body in merged.bodies)
+    return Replayed(bodies, same, state.room.scale_source)
 
 
-def instants(recording: Recording) -> Iterator[tuple[Body, Instant]]:
-    """Each recorded body with the reports that it was made of, if none of these is lost."""
+def instants(recording: Recording) -> Iterator[tuple[list[Body], Instant]]:
+    """The recorded bodies of each instant, one of each person, with the reports that they were
+    made of, if none of these is lost."""
     each = [_by_frame(reports) for reports in recording.reports]
     late_s = {told.calibration: told.late_s for told in recording.cameras}
     tolerance_s = 0.5 * recording.head.period_s
-    for body in recording.bodies:
+    for _, people in groupby(recording.bodies, _instant_of):
+        bodies = list(people)
+        body = bodies[0]
         late = late_s.get(body.calibration, 0.0)
         now = []
         for by_frame, frame in zip(each, body.made_of, strict=False):
@@ -102,7 +110,12 @@ def instants(recording: Recording) -> Iterator[tuple[Body, Instant]]:
             now.append(_near(told, body, tolerance_s))
         found = tuple(-1 if report is None else report.frame for report in now)
         if found == body.made_of and any(report is not None for report in now):
-            yield body, Instant(tuple(now))
+            yield bodies, Instant(tuple(now))
+
+
+def _instant_of(body: Body) -> tuple[float, tuple[int, ...], int]:
+    """What the bodies of an instant share."""
+    return body.captured_s, body.made_of, body.calibration
 
 
 def _by_frame(reports: Sequence[View]) -> defaultdict[int, list[View]]:
