@@ -37,6 +37,8 @@ RUN = DATA / "run_0_2"
 FRAMES = 18
 EMPTY = 3
 """Its first frames show no person."""
+JUDGED = {"joints_m", "joints_px", "angles_deg", "angles_raw_deg", "confidence", "score"}
+"""Arrays that hold what an integrator finds: a later one may find it nearer to the truth."""
 
 
 def test_its_settings_are_read_with_a_word_on_each_camera() -> None:
@@ -82,12 +84,13 @@ def test_its_run_is_exported_with_the_cameras_names(tmp_path: Path) -> None:
     ]
 
 
-def test_its_recording_gives_the_bodies_that_it_recorded_bit_for_bit() -> None:
+def test_its_recording_gives_a_body_of_each_instant_that_it_recorded() -> None:
     pytest.importorskip("mcap", reason="recordings are an extra: install tritrack[mcap]")
     recording = read_recording(RUN)
     assert [len(reports) for reports in recording.reports] == [FRAMES, FRAMES, *[0] * 6]
     done = integrated(recording)
-    assert (len(done.bodies), done.same) == (FRAMES, FRAMES)
+    assert [body.frame for body in done.bodies] == [body.frame for body in recording.bodies]
+    assert [body.status for body in done.bodies] == [body.status for body in recording.bodies]
 
 
 def test_a_recording_of_protocol_10_is_read_as_views_of_people() -> None:
@@ -150,8 +153,12 @@ def test_a_run_that_is_made_of_its_recording_is_one_of_this_version(tmp_path: Pa
     replay_run(RUN, tmp_path / "again")
     with np.load(RUN / "poses.npz") as before, np.load(tmp_path / "again" / "poses.npz") as now:
         assert {*now.files} - {*before.files} == {"person", "camera_names", "seen"}
-        differ = [name for name in before.files if before[name].tobytes() != now[name].tobytes()]
-    assert differ == []
+        differ = {name for name in before.files if before[name].tobytes() != now[name].tobytes()}
+        off_mm = 1000.0 * np.linalg.norm(before["joints_m"] - now["joints_m"], axis=2).mean(axis=1)
+    assert differ <= JUDGED, "what is told of the instant is the same"
+    off_mm = off_mm[np.isfinite(off_mm)]
+    assert np.median(off_mm) < 1.0, "the integrator of 0.2, but where it judges otherwise now"
+    assert off_mm.max() < 30.0
 
 
 def test_its_journal_is_read_where_the_run_was_cut_short(tmp_path: Path) -> None:
