@@ -51,7 +51,8 @@ RESULTS: Final = {
         ("clips/calibration.json", "clips/s0*/cam1.avi", "clips/s0*/cam2.avi")
     ),
     "tritrack synth --out scenes": Result(("scenes/people2_s00_t1/truth.npz",), "1 clip written"),
-    "tritrack track": Result(("runs/s0*/poses.npz", "runs/s0*/summary.json")),
+    "tritrack track clips": Result(("runs/s0*/poses.npz", "runs/s0*/summary.json")),
+    "tritrack track scenes": Result(("runs/people2_s00_t1/poses.npz",), "1 clip tracked"),
     "tritrack live clips": Result(
         ("runs/live/poses.npz", "runs/live/posture.json"), "posture: squat"
     ),
