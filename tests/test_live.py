@@ -335,10 +335,14 @@ def test_a_person_who_is_lost_or_gone_is_grey_and_leaves_the_list_after_a_second
     page.show(msgspec.structs.replace(two_at(1), others=(lost,)))
     assert looking.until(f"document.body.dataset.frame === '1' && {AWAY} === '2'")
     assert looking.ask(LISTED).endswith("|2 squat lost, searching")
-    page.show(msgspec.structs.replace(two_at(14), others=()))
+    alone = msgspec.structs.replace(two_at(14), others=())
+    assert alone.body is not None
+    by_one = msgspec.structs.replace(alone.body, views="1")
+    page.show(msgspec.structs.replace(alone, body=by_one))
     assert looking.until("document.body.dataset.frame === '14'")
     assert looking.ask(LISTED) == "1 walk in place tracking|2 no posture yet gone"
     assert looking.ask(AWAY) == "2"
+    assert looking.ask("document.querySelector('#front').hidden"), "it would turn nobody"
     looking.drawn()
     assert share_like(looking.seen("#room"), PEOPLE[1]) < 0.001, "the gone person is drawn"
     page.show(msgspec.structs.replace(two_at(17), others=()))

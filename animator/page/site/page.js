@@ -107,7 +107,7 @@ function show(frame) {
   views.forEach((view, i) => view.show(frame.views[i] ?? null, coloured.map((one) => ({ ...one, fit: one.views[i] })), looked.views[i], greeting));
   room.show(coloured);
   showPosture(looked, people.colour(looked.person));
-  actions.alone(/^\d$/.test(looked.from_views));
+  actions.alone(!people.several && /^\d$/.test(frame.from_views)); // of several, nobody is turned about
   showTrust(frame.trust);
   const words = looked.person ? `person ${looked.person}: ${looked.words}` : looked.words;
   showStatus(history.over ? "over" : looked.status, history.over ? "the run is over: this is its recording" : history.following ? words : `looking back; the run goes on`);
