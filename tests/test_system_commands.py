@@ -125,7 +125,7 @@ def test_every_command_has_help_with_an_example(tritrack: Commands, words: list[
         ),
         (["live", "nosuch.toml"], "there is no clip folder and no settings file nosuch.toml"),
         (["live"], "Missing argument"),
-        (["view", "x", "--viewer", "3"], "--viewer"),
+        (["view", "x", "--viewer", "9"], "--viewer"),
         (["synth"], "Missing option '--out'"),
         (["synth", "--out", "o", "--performers", "0"], "--performers"),
         (["synth", "--out", "o", "--takes", "0"], "--takes"),
