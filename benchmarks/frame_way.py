@@ -81,8 +81,9 @@ def way(root: Path) -> Way:
     named = calls.noted(recognizer.step)
     each: list[set[CodeType]] = []
 
-    def watch(_frames: object, _reports: object, body: Any) -> None:
+    def watch(_frames: object, _reports: object, bodies: Any) -> None:
         nonlocal naming
+        body = bodies[0] if isinstance(bodies, tuple) else bodies  # older versions gave one
         naming, _ = named(naming, body)
         each.append(calls.taken())
 

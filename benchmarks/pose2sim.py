@@ -254,9 +254,8 @@ def main() -> None:
         for path in paths:
             settings = config_file.load(path)
             rows: list[Row] = []
-            tracked = track_clip(
-                settings, decoders, watch=Watch(lambda *row, to=rows: to.append(row), rows.clear)
-            )
+            seen = Watch(lambda a, b, bodies, to=rows: to.append((a, b, bodies[0])), rows.clear)
+            tracked = track_clip(settings, decoders, watch=seen)
             write_run(asked.out / path.stem, tracked.bodies, settings, tracked.facts)
             rig = whole_rig(tracked.clip)
             assert rig is not None
