@@ -14,6 +14,7 @@ T-pose either, and the room is never seen empty.
 
 import argparse
 import json
+from functools import partial
 from itertools import combinations
 from pathlib import Path
 from typing import Any, Final, NamedTuple
@@ -254,8 +255,7 @@ def main() -> None:
         for path in paths:
             settings = config_file.load(path)
             rows: list[Row] = []
-            seen = Watch(lambda a, b, bodies, to=rows: to.append((a, b, bodies[0])), rows.clear)
-            tracked = track_clip(settings, decoders, watch=seen)
+            tracked = track_clip(settings, decoders, watch=Watch(partial(_noted, rows), rows.clear))
             write_run(asked.out / path.stem, tracked.bodies, settings, tracked.facts)
             rig = whole_rig(tracked.clip)
             assert rig is not None
@@ -268,6 +268,10 @@ def main() -> None:
     if asked.landmarks is not None:
         compare_joints(found, asked.out / "trial.json", asked.landmarks)
         compare_knees(found, asked.out / "trial.json", asked.landmarks)
+
+
+def _noted(rows: list[Row], frames: Any, reports: Any, bodies: tuple[Body, ...]) -> None:
+    rows.append((frames, reports, bodies[0]))
 
 
 def sheet(rows: list[Row], rig: Rig, path: Path) -> None:
