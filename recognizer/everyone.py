@@ -28,7 +28,7 @@ class State(NamedTuple, Generic[One]):
 
 
 def init(fresh: One) -> State[One]:
-    """Nobody yet.
+    """No person yet.
 
     Args:
         fresh: The recogniser's state before any body.
@@ -63,6 +63,6 @@ def finished(
         of_one: The end of one stream.
     """
     for each in state.streams:
-        told = of_one(each.state, each.last)
-        if told is not None:
-            yield told
+        last = of_one(each.state, each.last)
+        if last is not None:
+            yield last

@@ -143,6 +143,14 @@ def test_who_stands_beside_another_has_none_of_their_pixels() -> None:
     assert right in {41, 42}, "all of their own, but a border in doubt"
 
 
+def test_a_pixel_that_is_likelier_the_followed_persons_is_not_anothers() -> None:
+    """Before a wall of one colour, where the network alone shows who is where."""
+    room = silhouettes.init(learn([EMPTY]), SilhouetteSettings(), DEFAULT)
+    shown = Shown(result(4, 24, 4.0), 3, ((5, result(16, 36, 2.0)),))
+    _, second = everyone(room, EMPTY, silhouette(4, 24), shown, 0.15)
+    assert columns(unpack(second)) == (24, 36)
+
+
 def test_of_everyone_those_without_landmarks_are_left_out_and_the_others_stay() -> None:
     room = silhouettes.init(learn([EMPTY]), SilhouetteSettings(), DEFAULT)
     shown = Shown(LandmarkResult(None), 3, ((5, result(16, 30)),))

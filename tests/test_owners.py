@@ -28,7 +28,7 @@ from integrator.people.owners import (
 )
 from integrator.people.sight_gaps import (
     GAP_COLOUR_M,
-    LATELY,
+    INSTANTS,
     Gap,
     People,
     colour_distance,
@@ -87,15 +87,15 @@ def test_a_gap_is_that_of_sight_lines_and_what_colours_differ() -> None:
 
 
 def test_gaps_are_the_mean_of_the_last_instants() -> None:
-    known = [Gap(((0, 0), (1, 0)), 0.6, 2), Gap(((0, 0), (1, 1)), 0.0, LATELY)]
+    known = [Gap(((0, 0), (1, 0)), 0.6, 2), Gap(((0, 0), (1, 1)), 0.0, INSTANTS)]
     gaps = {gap.tracks: gap for gap in with_instant(known, RIG, BOTH)}
     own = gaps[((0, 0), (1, 0))]
     assert own.mean_m == pytest.approx(0.4, abs=0.01)
     assert own.instants == 3
     (other,) = (gap for gap in gaps_of(BOTH) if gap.tracks == ((0, 0), (1, 1)))
     late = gaps[((0, 0), (1, 1))]
-    assert late.mean_m == pytest.approx(other.mean_m / LATELY)
-    assert late.instants == LATELY
+    assert late.mean_m == pytest.approx(other.mean_m / INSTANTS)
+    assert late.instants == INSTANTS
 
 
 def test_the_gaps_of_who_is_not_seen_are_forgotten() -> None:

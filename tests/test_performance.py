@@ -213,3 +213,20 @@ def test_views_side_by_side_take_short_turns_and_only_meanwhile() -> None:
         raise ValueError
     assert meanwhile_s == [pytest.approx(0.0002)]
     assert sys.getswitchinterval() == before_s
+
+
+@pytest.mark.parametrize(("people", "counts"), [((0,), True), ((1,), True), ((1, 2), False)])
+def test_views_of_several_people_are_no_evidence_about_the_rig(
+    monkeypatch: pytest.MonkeyPatch, guided: object, people: tuple[int, ...], counts: bool
+) -> None:
+    """One view may have shown the other person for a moment."""
+    moment = dict[str, Any](captured_s=0.0, clock_s=0.0, frame=0)
+    bodies = tuple(Body(person=n, status="empty", views="none", **moment) for n in people)
+
+    def step(state: several.State, instant: Instant, *_: object) -> Any:
+        return state, several.Merged(bodies, Guide(frames=(0, 0), **moment), instant)
+
+    monkeypatch.setattr("integrator.people.several.step", step)
+    witness = Witness()
+    performed(prepared(), {}, witness, None, Course())
+    assert bool(witness.seen.rows) == counts

@@ -151,3 +151,20 @@ def test_a_command_to_measure_the_body_anew_is_for_everyone() -> None:
     assert [isinstance(body, Unmeasured) and not body.samples for body in bodies] == [True] * 2
     unknown = Command(what="front")
     assert several.commanded(crowd.state, unknown) == crowd.state
+
+
+def test_bodies_come_by_number_whoever_was_exchanged() -> None:
+    """The one whose number was given back stands second among the lives."""
+    crowd = Crowd()
+    crowd.last(8, LEFT, RIGHT)
+    one, other = crowd.state.lives
+    swapped = (one._replace(number=other.number), other._replace(number=one.number))
+    crowd.state = crowd.state._replace(lives=swapped)
+    assert [body.person for body in crowd.see(LEFT, RIGHT)] == [1, 2]
+
+
+def test_no_more_people_are_known_than_the_bound(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(several, "MOST", 1)
+    crowd = Crowd()
+    crowd.see(LEFT)
+    assert [body.person for body in crowd.last(2 * AFTER_BIRTH, LEFT, RIGHT)] == [1]

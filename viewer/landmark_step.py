@@ -24,7 +24,7 @@ from viewer.landmarks.own_landmarks import (
 )
 from viewer.landmarks.person_mask import LandmarkResult, Shown
 from viewer.people import known_people
-from viewer.people.close_people import are_close, beside, cheapest, told_apart, without
+from viewer.people.close_people import are_close, beside, cheapest, looked_at_alone, without
 from viewer.people.known_people import PEOPLE, Look, People, corners_of, is_person
 from viewer.people.people_detector import Detection, overlap, people_in
 from viewer.room.body_region import Bytes
@@ -93,7 +93,7 @@ def step(
     people = known_people.expected_at(state.people, root_px)
     model = LandmarkModel(network_of(settings.landmarks), alone and not frame.hurried)
     if not frame.hurried and are_close(people):
-        looks, new = told_apart(frame.picture, people, model)
+        looks, new = looked_at_alone(frame.picture, people, model)
         state = state._replace(searched_s=frame.captured_s)
     else:
         looks, new = _looks(frame.picture, seen, people, model), list[LandmarkResult]()

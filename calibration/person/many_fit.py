@@ -5,11 +5,10 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import least_squares
 
 from calibration.person.many_guess import FIXED, Layout, Pair, pair_guess
 from calibration.person.rig_evidence import Evidence, Sides
-from calibration.person.rig_fit import sides_of
+from calibration.person.rig_fit import in_rounds, sides_of
 from calibration.person.rig_residuals import observed_misfits, prior_misfits
 from calibration.tracks.sight_lines import Numbers
 from common.body.body import Vector
@@ -41,27 +40,19 @@ def many_fitted(start: Vector, layout: Layout, pairs: Pairs, rounds: int, steps:
         steps: Iterations of the fit in each round.
     """
     free = np.setdiff1d(np.arange(layout.size), FIXED)
-    guess = start.copy()
-
-    def with_free(values: Vector) -> Vector:
-        whole = guess.copy()
-        whole[free] = values
-        return whole
-
-    for _ in range(rounds):
-        sides = many_sides(guess, layout, pairs)
-        found = least_squares(
-            lambda values, at=sides: many_misfits(with_free(values), layout, pairs, at),
-            guess[free],
-            x_scale="jac",
-            max_nfev=steps,
-            ftol=1e-5,
-            xtol=1e-6,
-        )
-        guess = with_free(found.x)
-    jacobian = np.zeros((len(found.fun), layout.size))
-    jacobian[:, free] = found.jac
-    return ManyFit(guess, float(found.cost), sides, jacobian)
+    found, sides, own = in_rounds(
+        start,
+        free,
+        (
+            lambda guess: many_sides(guess, layout, pairs),
+            lambda guess, at: many_misfits(guess, layout, pairs, at),
+        ),
+        rounds,
+        steps,
+    )
+    jacobian = np.zeros((len(own), layout.size))
+    jacobian[:, free] = own
+    return ManyFit(found.guess, found.cost, sides, jacobian)
 
 
 def many_sides(guess: Vector, layout: Layout, pairs: Pairs) -> dict[Pair, tuple[Sides, ...]]:

@@ -1,6 +1,7 @@
 """The rig, the person's lengths and the delays that explain both views best."""
 
-from typing import Final, NamedTuple
+from collections.abc import Callable
+from typing import Final, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,8 +45,45 @@ def fitted(start: Vector, evidence: Evidence, free: Sides, rounds: int, steps: i
         rounds: How often the exchanged sides are decided again.
         steps: Iterations of the fit in each round.
     """
+    found, sides, jacobian = in_rounds(
+        start,
+        free,
+        (lambda guess: sides_of(guess, evidence), lambda guess, at: misfits(guess, evidence, at)),
+        rounds,
+        steps,
+    )
+    return Fit(found.guess, found.cost, sides, jacobian)
+
+
+class Best(NamedTuple):
+    """The best guess, and half the sum of its squared residuals."""
+
+    guess: Vector
+    cost: float
+
+
+Decided = TypeVar("Decided")
+
+
+def in_rounds(
+    start: Vector,
+    free: Sides | NDArray[np.int64],
+    objective: tuple[Callable[[Vector], Decided], Callable[[Vector, Decided], Vector]],
+    rounds: int,
+    steps: int,
+) -> tuple[Best, Decided, Numbers]:
+    """The best guess near a start, what was decided for it, and its (residuals, free) Jacobian.
+
+    Args:
+        start: A guess.
+        free: Which of its numbers may change.
+        objective: What a guess decides, as exchanged sides, and the residuals by that.
+        rounds: At least one: how often that is decided again.
+        steps: Iterations of the fit in each round.
+    """
     from scipy.optimize import least_squares
 
+    decide, residuals = objective
     guess = start.copy()
 
     def with_free(values: Vector) -> Vector:
@@ -54,9 +92,9 @@ def fitted(start: Vector, evidence: Evidence, free: Sides, rounds: int, steps: i
         return whole
 
     for _ in range(rounds):
-        sides = sides_of(guess, evidence)
+        decided = decide(guess)
         found = least_squares(
-            lambda values, at=sides: misfits(with_free(values), evidence, at),
+            lambda values, at=decided: residuals(with_free(values), at),
             guess[free],
             x_scale="jac",
             max_nfev=steps,
@@ -64,7 +102,7 @@ def fitted(start: Vector, evidence: Evidence, free: Sides, rounds: int, steps: i
             xtol=1e-6,
         )
         guess = with_free(found.x)
-    return Fit(guess, float(found.cost), sides, found.jac)
+    return Best(guess, float(found.cost)), decided, found.jac
 
 
 def on_time(guess: Vector, evidence: Evidence) -> Vector:

@@ -11,7 +11,7 @@ ONE_S: Final = 0.5
 """How long two people, each shown by views that do not show the other, must be in one place to be
 one."""
 LONG_S: Final = 2.0
-"""Age from which a person has surely been somebody else than another, seconds."""
+"""Age from which a person is surely not another, seconds."""
 SWAPPED_S: Final = 0.4
 """How long two people must wear each other's clothes to be exchanged back, seconds."""
 
@@ -54,7 +54,7 @@ def loosened(
     mistaken: Sequence[tuple[int, int]],
     room: merge_state.State,
 ) -> tuple[list[Life], list[Indices]]:
-    """The people and the observations in which nobody has one of another: who had is seen by the
+    """The people and the observations in which no person has one of another: who had is seen by the
     other views alone from now on, and their pose begins anew.
 
     Args:

@@ -1,4 +1,4 @@
-"""Whom each view's observations show: known people first, then groups that are nobody known yet."""
+"""Whom each view's observations show: known people first, then groups of one new person each."""
 
 from collections.abc import Sequence
 from itertools import combinations, permutations, product, starmap
@@ -9,6 +9,7 @@ import numpy as np
 from calibration.gate.sight_clash import MEETS_M
 from common.body.observation import Observation
 from common.rig.camera import Camera, Rig, project
+from integrator.belief import NOBODY
 from integrator.people.known_life import Life, Places
 from integrator.people.sight_gaps import (
     Apart,
@@ -49,9 +50,7 @@ TAKEN: Final = 0.4
 """By how much nearer two people's colours are to each other's clothes than to their own, in what
 these differ, where they were taken for each other."""
 ALIKE: Final = 0.1
-"""Difference of colours below which clothes tell nobody apart."""
-NOBODY: Final = 0.3
-"""Mean confidence of landmarks below which they show no person; see `integrator/belief.py`."""
+"""Difference of colours below which clothes do not distinguish people."""
 
 
 class Group(NamedTuple):
@@ -241,7 +240,7 @@ def mistaken(
     people: People, known: Sequence[Sequence[int]], gaps: Sequence[Gap]
 ) -> list[tuple[int, int]]:
     """People, by their places, of whom a view shows another: that one's observation is much
-    farther from the person's than another of the same view has been lately."""
+    farther from the person's than another of the same view has been in the last instants."""
     apart_m, found = Apart(people, gaps), []
     for place, own in enumerate(known):
         for one, other in permutations(_places(own), 2):

@@ -27,17 +27,17 @@ MOST: Final = 6
 FIRST: Final = 1
 """The first person's number; 0 is that of a run that follows one person."""
 BORN_S: Final = 1.0 / 3.0
-"""How long two views must show somebody new before they are a person, seconds."""
+"""How long two views must show a new person before they get a number, seconds."""
 ALONE_BORN_S: Final = 1.0
 """The same where one view of several shows them: another may see them soon."""
 CONFIRMED_S: Final = 1.0
 """Time within which a new person must be believed once."""
 KEPT_S: Final = 5.0
-"""How long somebody out of sight keeps their number, seconds."""
+"""How long a person out of sight keeps their number, seconds."""
 
 
 class Coming(NamedTuple):
-    """Observations that show nobody known."""
+    """Observations that show no known person."""
 
     tracks: tuple[int, ...]
     """By view, the viewer's number; NO_TRACK: it does not show them."""
@@ -56,14 +56,14 @@ class State(NamedTuple):
     doubles: tuple[Double, ...] = ()
     swaps: tuple[Swap, ...] = ()
     fresh: int = FIRST
-    """The next number that nobody has had."""
+    """The next number that no person has had."""
 
 
 class Merged(NamedTuple):
     """What an instant gives."""
 
     bodies: tuple[Body, ...]
-    """By number; of a run that follows one person, and where nobody is known, one of number 0."""
+    """By number; one of number 0 where one person is followed, or no person is known."""
     guide: Guide
     """About the first of them in sight."""
     of_first: Instant
@@ -162,7 +162,7 @@ def _recognised(
 
 
 def _wait_s(group: Group, state: State) -> float:
-    """How long a new person must be shown: not at all where nobody is known and it is clear."""
+    """How long a new person must be shown: not at all where no person is known and it is clear."""
     if group.is_clear and not state.lives:
         return 0.0
     shown = sum(index >= 0 for index in group.indices)
@@ -199,10 +199,10 @@ def _ended(state: State, now_s: float) -> State:
 
 
 def _without_people(state: State, instant: Instant) -> tuple[State, Merged]:
-    """An instant in which nobody is known."""
-    nobody = _of(instant, (-1,) * len(instant.views))
-    room, body, guide = merge.step(state.room._replace(person=Waiting()), nobody)
-    return state._replace(room=room), Merged((body,), guide, nobody)
+    """An instant in which no person is known."""
+    empty = _of(instant, (-1,) * len(instant.views))
+    room, body, guide = merge.step(state.room._replace(person=Waiting()), empty)
+    return state._replace(room=room), Merged((body,), guide, empty)
 
 
 def _of(instant: Instant, indices: Sequence[int]) -> Instant:

@@ -1,4 +1,4 @@
-"""How near the sight lines of two views' observations have passed lately."""
+"""How near the sight lines of two views' observations have passed in the last instants."""
 
 from collections.abc import Sequence
 from itertools import combinations
@@ -14,7 +14,7 @@ COLOUR_SCALE: Final = 40.0
 """Such a difference, in units of L*a*b*."""
 GAP_COLOUR_M: Final = 0.05
 """What such a difference adds to the gap between two views' sight lines, metres."""
-LATELY: Final = 15
+INSTANTS: Final = 15
 """Number of instants of which gaps are the running mean."""
 
 People = Sequence[Sequence[Observation]]
@@ -70,7 +70,7 @@ def with_instant(gaps: Sequence[Gap], rig: Rig, people: People) -> tuple[Gap, ..
         if not np.isnan(apart_m):
             colours = (people[view][index].colours for view, index in (one, other))
             now_m = apart_m + GAP_COLOUR_M * colour_distance(*colours)
-            count = min(known.instants + 1, LATELY)
+            count = min(known.instants + 1, INSTANTS)
             known = Gap(tracks, known.mean_m + (now_m - known.mean_m) / count, count)
         if known.instants:
             after.append(known)

@@ -107,7 +107,7 @@ def performed(
             going, reports, merged = _stepped(going, frames, calibration, pool)
             for body in merged.bodies:
                 bodies.append(body)
-            witness(frames, _of_one(reports, merged), merged.bodies[0])
+            witness(frames, _evidence(reports, merged), merged.bodies[0])
             if watch:
                 watch.each(frames, reports, merged.bodies)
             course.tell(share_of(clip, frames))
@@ -170,7 +170,7 @@ def _stepped(
     return going, reports, merged
 
 
-def _of_one(reports: dict[int, View], merged: Merged) -> dict[int, View]:
+def _evidence(reports: dict[int, View], merged: Merged) -> dict[int, View]:
     """The reports that are evidence about the rig: none where several people are known, as of two
     who are close one view may have shown the other for a moment."""
     return reports if len(merged.bodies) == 1 else {}

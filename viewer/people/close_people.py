@@ -60,7 +60,7 @@ def are_close(people: People) -> bool:
     )
 
 
-def told_apart(
+def looked_at_alone(
     picture: Image, people: People, model: LandmarkModel
 ) -> tuple[dict[int, LandmarkResult], list[LandmarkResult]]:
     """The looks at people who are close to each other, by number, and at new ones.
