@@ -20,8 +20,8 @@ from osc_reader import read_osc
 from rich.console import Console
 
 from common.bus.bus_keys import KeysError
-from common.bus.messages import Body
-from runtime.bridges import bridging
+from common.bus.messages import Body, Message, Posture
+from runtime.bridges import bridging, senders
 from runtime.client import WAIT_S
 from tritrack import subscribe
 
@@ -106,7 +106,7 @@ def test_keys_that_are_missing_are_told_before_a_run_is_waited_for(tmp_path: Pat
 )
 def test_each_body_is_handed_on_in_the_protocol_that_is_asked_for(
     monkeypatch: pytest.MonkeyPatch,
-    protocol: bridging.Protocol,
+    protocol: senders.Kind,
     sent: int,
     address: str,
 ) -> None:
@@ -117,20 +117,22 @@ def test_each_body_is_handed_on_in_the_protocol_that_is_asked_for(
     asked: list[Any] = []
     heard = Console(file=io.StringIO(), width=500)
 
-    def subscribed(*given: object, **named: object) -> Iterator[Body]:
+    def subscribed(*given: object, **named: object) -> Iterator[Message]:
         asked.append((given, named))
-        return iter((first, empty, last))
+        return iter(() if "kind" in named else (first, empty, last))
 
     def sender(to: str) -> Callable[[bytes], None]:
         asked.append(to)
         return packets.append
 
     monkeypatch.setattr(bridging, "subscribe", subscribed)
-    monkeypatch.setattr(bridging, "osc_sender", sender)
-    monkeypatch.setattr(bridging, "lsl_outlet", lambda: packets.append)
+    monkeypatch.setattr(senders, "osc_sender", sender)
+    monkeypatch.setattr(senders, "lsl_outlet", lambda: packets.append)
+    monkeypatch.setattr(senders, "marker_outlet", lambda: None)
     found = bridging.bridge(protocol, "tcp/10.0.0.1:7447", "attic", "127.0.0.1:9000", heard)
     assert (found, len(packets)) == (sent, sent)
-    assert asked[0] == (("tcp/10.0.0.1:7447", "attic"), {"keys": ""})
+    there = ("tcp/10.0.0.1:7447", "attic")
+    assert asked[:2] == [(there, {"keys": ""}), (there, {"kind": Posture, "keys": ""})]
     assert isinstance(heard.file, io.StringIO)
     assert heard.file.getvalue() == (
         f"waiting for a run at tcp/10.0.0.1:7447 (room attic), at most {WAIT_S:.0f} s\n"
@@ -138,13 +140,13 @@ def test_each_body_is_handed_on_in_the_protocol_that_is_asked_for(
     if protocol == "lsl":
         assert packets == [first, empty, last]
     else:
-        assert asked[1:] == ["127.0.0.1:9000"]
+        assert asked[2:] == ["127.0.0.1:9000"]
         assert all(dict(read_osc(packet)).keys() >= {address} for packet in packets)
 
 
 @pytest.mark.parametrize(("protocol", "sent"), [("osc", 4), ("vmc", 2), ("lsl", 2)])
 def test_of_several_people_osc_has_all_and_the_others_the_first(
-    monkeypatch: pytest.MonkeyPatch, protocol: bridging.Protocol, sent: int
+    monkeypatch: pytest.MonkeyPatch, protocol: senders.Kind, sent: int
 ) -> None:
     bodies = [
         msgspec.structs.replace(a_body(frame, row), person=person)
@@ -152,11 +154,59 @@ def test_of_several_people_osc_has_all_and_the_others_the_first(
         for person in (1, 2)
     ]
     packets: list[Any] = []
-    monkeypatch.setattr(bridging, "subscribe", lambda *_, **__: iter(bodies))
-    monkeypatch.setattr(bridging, "osc_sender", lambda _: packets.append)
-    monkeypatch.setattr(bridging, "lsl_outlet", lambda: packets.append)
+    monkeypatch.setattr(
+        bridging, "subscribe", lambda *_, kind=Body, **__: iter(bodies if kind is Body else ())
+    )
+    monkeypatch.setattr(senders, "osc_sender", lambda _: packets.append)
+    monkeypatch.setattr(senders, "lsl_outlet", lambda: packets.append)
+    monkeypatch.setattr(senders, "marker_outlet", lambda: None)
     heard = Console(file=io.StringIO())
     found = bridging.bridge(protocol, "tcp/10.0.0.1:7447", "attic", "127.0.0.1:9000", heard)
     assert (found, len(packets)) == (sent, sent)
     if protocol == "lsl":
         assert [body.person for body in packets] == [1, 1]
+
+
+class Postures:
+    """A subscription to postures that come once the bodies did."""
+
+    def __init__(self, postures: list[Posture], after: threading.Event) -> None:
+        self._postures, self._after = postures, after
+
+    def __iter__(self) -> Iterator[Posture]:
+        assert self._after.wait(10.0)
+        yield from self._postures
+
+
+@pytest.mark.parametrize(
+    ("protocol", "address", "people"),
+    [("osc", "/tritrack/posture", 2), ("vmc", "/VMC/Ext/Blend/Apply", 1)],
+)
+def test_postures_are_forwarded_beside_the_bodies_and_the_first_persons_alone_by_vmc(
+    monkeypatch: pytest.MonkeyPatch, protocol: senders.Kind, address: str, people: int
+) -> None:
+    """Persons 2 and 3 are there, 2 first: VMC has its posture alone."""
+    row = random_joints(1)[0]
+    packets: list[bytes] = []
+    after = threading.Event()
+    postures = [
+        Posture(frame=4, captured_s=0.2, clock_s=9.0, person=person, name="walk", doing="walk")
+        for person in (3, 2)
+    ]
+
+    def bodies() -> Iterator[Body]:
+        for person in (2, 3):
+            yield msgspec.structs.replace(a_body(4, row), person=person)
+        after.set()
+
+    def subscribed(*_: object, kind: type[Message] = Body, **__: object) -> Any:
+        return bodies() if kind is Body else Postures(postures, after)
+
+    monkeypatch.setattr(bridging, "subscribe", subscribed)
+    monkeypatch.setattr(senders, "osc_sender", lambda _: packets.append)
+    bridging.bridge(
+        protocol, "tcp/10.0.0.1:7447", "a", "127.0.0.1:9000", Console(file=io.StringIO())
+    )
+    told = [place for packet in packets for place, _ in read_osc(packet)]
+    said = [each.replace("/person/2", "").replace("/person/3", "") for each in told]
+    assert said.count(address) == people

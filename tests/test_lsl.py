@@ -15,8 +15,8 @@ import pytest
 from meeting import a_body, saying
 from moving import random_joints
 
-from common.bus.messages import Body
-from runtime.bridges.lsl import CHANNELS, lsl_outlet, sample_of
+from common.bus.messages import Body, Posture
+from runtime.bridges.lsl import CHANNELS, lsl_outlet, marker_outlet, marker_step, sample_of
 from runtime.bridges.osc import BridgeError
 from tritrack import subscribe
 
@@ -82,6 +82,33 @@ def test_a_stream_names_its_channels_and_each_sample_is_stamped_with_its_frames_
     assert channels.children[45][1].values[1] == ("unit", "probability")
     assert channels.children[76][1].values[1] == ("unit", "degrees")
     assert pushed == [(sample_of(body), 498.0)]
+
+
+def test_a_marker_is_set_where_a_posture_begins_and_where_it_ends() -> None:
+    doing, told = "", []
+    for frame, now in enumerate(("", "walk", "walk", "squat", "")):
+        posture = Posture(frame=frame, captured_s=0.0, clock_s=0.0, name="", doing=now)
+        doing, markers = marker_step(doing, posture)
+        told.append(markers)
+    assert told == [[], ["begin walk"], [], ["end walk", "begin squat"], ["end squat"]]
+
+
+def test_markers_have_a_stream_of_their_own_and_their_frames_moment(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A frame that was taken 2 s ago, at 500 of LSL's clock, was taken at 498."""
+    infos, pushed = list[Any](), list[Any]()
+    library = SimpleNamespace(
+        StreamInfo=lambda *told: infos.append(told),
+        StreamOutlet=lambda _: SimpleNamespace(push_sample=lambda *of: pushed.append(of)),
+        IRREGULAR_RATE=0.0,
+        local_clock=lambda: 500.0,
+    )
+    monkeypatch.setitem(sys.modules, "pylsl", library)
+    monkeypatch.setattr("runtime.bridges.lsl.time.monotonic", lambda: 12.0)
+    marker_outlet("attic")("begin walk", 10.0)
+    assert infos == [("attic", "Markers", 1, 0.0, "string", "attic-markers")]
+    assert pushed == [(["begin walk"], 498.0)]
 
 
 @pytest.mark.slow

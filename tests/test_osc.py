@@ -12,8 +12,8 @@ from moving import random_joints
 from osc_reader import read_osc
 
 from common.body.body import ANGLE_NAMES, JOINT_NAMES
-from common.bus.messages import Body
-from runtime.bridges.osc import BridgeError, osc_packet, osc_sender
+from common.bus.messages import Body, Performance, Posture
+from runtime.bridges.osc import BridgeError, osc_packet, osc_sender, posture_packet
 
 pytest.importorskip("pythonosc", reason="pip install 'tritrack[osc]'")
 
@@ -42,6 +42,20 @@ def test_each_of_several_people_has_addresses_of_their_own() -> None:
 def test_nobody_is_told_by_the_frame_alone() -> None:
     body = Body(frame=3, captured_s=0.2, clock_s=0.2, status="empty", views="none")
     assert read_osc(osc_packet(body)) == [("/tritrack/frame", [3, 0.2, 0.2, "empty"])]
+
+
+def test_a_posture_says_what_is_being_done_and_a_performance_that_it_has_ended() -> None:
+    ended = Performance(
+        "kick_left_forward", 30, 59, onset_s=2.0, end_s=4.0, posterior=0.75, times=3
+    )
+    posture = Posture(
+        frame=60, captured_s=4.25, clock_s=9.0, name="kick_left_forward", doing="squat", times=1
+    )
+    now = ("/tritrack/posture", [60, 4.25, "squat", 1, "kick_left_forward"])
+    assert read_osc(posture_packet(posture)) == [now]
+    after = msgspec.structs.replace(posture, event=ended, person=2)
+    event = ("/tritrack/person/2/event", ["kick_left_forward", 2.0, 4.0, 3, 0.75])
+    assert read_osc(posture_packet(after)) == [("/tritrack/person/2/posture", now[1]), event]
 
 
 @pytest.mark.parametrize("to", ["", "127.0.0.1", "127.0.0.1:many", "127.0.0.1:70000"])

@@ -12,8 +12,8 @@ from animator.skeleton.bones import BONES
 from common.body.body import JOINT_NAMES, POSE_INDEX, rest_pose
 from common.body.extremities import extremities
 from common.body.kinematics import joints
-from common.bus.messages import Body
-from runtime.bridges.vmc import MEASURED, Measured, step
+from common.bus.messages import Body, Posture
+from runtime.bridges.vmc import MEASURED, Measured, posture_packet, step
 
 pytest.importorskip("pythonosc", reason="pip install 'tritrack[osc]'")
 
@@ -144,3 +144,18 @@ def test_another_person_has_a_skeleton_of_their_own() -> None:
     _, packet = step(state, large)
     _, alone = step(Measured(), large)
     assert packet == alone
+
+
+def test_the_posture_in_progress_is_a_blend_value_of_one_and_the_others_are_zero() -> None:
+    """As an avatar's expressions are sent: each value, then the word to apply them."""
+    known = {"walk": -3.0, "squat": -1.0}
+    posture = Posture(
+        frame=1, captured_s=0.1, clock_s=0.1, name="walk", doing="squat", log_likelihoods=known
+    )
+    assert read_osc(posture_packet(posture)) == [
+        ("/VMC/Ext/Blend/Val", ["squat", 1.0]),
+        ("/VMC/Ext/Blend/Val", ["walk", 0.0]),
+        ("/VMC/Ext/Blend/Apply", []),
+    ]
+    stands = msgspec.structs.replace(posture, doing="")
+    assert [told[1] for _, told in read_osc(posture_packet(stands))[:2]] == [0.0, 0.0]

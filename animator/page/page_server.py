@@ -181,13 +181,13 @@ class PageServer:
         found = self._file_of(path)
         if found is None:
             return connection.respond(HTTPStatus.NOT_FOUND, "no such page\n")
-        return Response(HTTPStatus.OK, "OK", _headers(*found), found[1])
+        return Response(HTTPStatus.OK, "OK", headers_of(*found), found[1])
 
     def _kept_token(self) -> Headers:
         """Move the token from the address bar, where it could be read and shared, to a cookie
         that no script reads and no foreign page makes a browser send."""
         cookie = f"{cookie_of(self._port)}={self._entrance.token}; HttpOnly; SameSite=Lax; Path=/"
-        headers = _headers("text/plain", b"")
+        headers = headers_of("text/plain", b"")
         headers.update({"Location": "/", "Set-Cookie": cookie})
         return headers
 
@@ -236,7 +236,8 @@ def site(*folders: Path) -> dict[str, File]:
     return {**files, "/": files["/index.html"]}
 
 
-def _headers(kind: str, content: bytes) -> Headers:
+def headers_of(kind: str, content: bytes) -> Headers:
+    """The headers of an answer of this type and content, which no other site may use."""
     said: Facts = {
         "Content-Type": f"{kind}; charset=utf-8" if kind.startswith("text/") else kind,
         "Content-Length": str(len(content)),

@@ -1,66 +1,73 @@
-"""A running bridge: bodies of a run in, another protocol out, until the run is over."""
+"""A running bridge: a run's bodies and postures in, another protocol out, until the run is over."""
 
-from collections.abc import Callable
+import threading
+from collections.abc import Iterable
+from contextlib import closing, suppress
 from pathlib import Path
-from typing import Literal
 
 from rich.console import Console
 
+from common.bus.bus import BusError
 from common.bus.bus_keys import refuse_missing
-from common.bus.messages import Body
-from runtime.bridges import vmc
+from common.bus.messages import Body, Posture
 from runtime.bridges.first_person import of_first
-from runtime.bridges.lsl import lsl_outlet
-from runtime.bridges.osc import osc_packet, osc_sender
+from runtime.bridges.senders import Kind, Sender, sender_of
 from runtime.client import WAIT_S, Subscription, subscribe
 from runtime.terminal import say
 
-Protocol = Literal["osc", "vmc", "lsl"]
+ENDS_S = 2.0
+"""Seconds that the last postures of a run may take after its last body."""
 
 
 def bridge(
-    protocol: Protocol, endpoint: str, room: str, to: str, console: Console, keys: str = ""
+    protocol: Kind, endpoint: str, room: str, to: str, console: Console, keys: str = ""
 ) -> int:
-    """Forward every body, by VMC and LSL the first person's alone; returns their number.
+    """Forward every body and posture, by VMC and LSL the first person's alone.
 
     Args:
         protocol: Name of the protocol.
         endpoint: The run's endpoint.
         room: The run's site.
-        to: `HOST:PORT` to which OSC and VMC are sent.
+        to: `HOST:PORT` to which OSC and VMC are sent, at which a WebSocket is opened.
         console: Shows what the bridge waits for.
         keys: Folder of a client's keys, where the run has keys.
 
+    Returns:
+        The number of bodies sent.
+
     Raises:
         BridgeError: When the protocol's library is missing, or `to` is no address.
+        PageError: When a WebSocket cannot be opened at `to`.
         KeysError: When a key is missing.
         BusError: When no run answers within a minute.
     """
     if keys:
         refuse_missing(Path(keys), "client")
     bodies = subscribe(endpoint, room, keys=keys)
-    waits = f"waiting for a run at {endpoint} (room {room}), at most {WAIT_S:.0f} s"
-    if protocol == "lsl":
-        push, sent = lsl_outlet(), 0
+    postures = subscribe(endpoint, room, kind=Posture, keys=keys)
+    with closing(sender_of(protocol, to)) as sender:
+        if sender.address:
+            say(console, f"bodies and postures at {sender.address}")
+        waits = f"waiting for a run at {endpoint} (room {room}), at most {WAIT_S:.0f} s"
         say(console, waits)
-        for body in of_first(bodies):
-            push(body)
-            sent += 1
-        return sent
-    send = osc_sender(to)
-    say(console, waits)
-    return _by_osc(protocol, bodies, send)
+        return _forward(sender, bodies, postures)
 
 
-def _by_osc(protocol: Protocol, bodies: Subscription[Body], send: Callable[[bytes], None]) -> int:
-    state, sent = vmc.Measured(), 0
-    for body in of_first(bodies) if protocol == "vmc" else bodies:
-        packet: bytes | None = None
-        if protocol == "vmc":
-            state, packet = vmc.step(state, body)
-        else:
-            packet = osc_packet(body)
-        if packet is not None:
-            send(packet)
-            sent += 1
+def _forward(sender: Sender, bodies: Iterable[Body], postures: Subscription[Posture]) -> int:
+    """Postures go from a thread of their own: they come after the body that they are of."""
+    person = [0]
+
+    def forward_postures() -> None:
+        with suppress(BusError):  # which the bodies' subscription raises too
+            for posture in postures:
+                if not sender.is_of_one or posture.person == person[0]:
+                    sender.send_posture(posture)
+
+    thread = threading.Thread(target=forward_postures, name="postures", daemon=True)
+    thread.start()
+    sent = 0
+    for body in of_first(bodies) if sender.is_of_one else bodies:
+        person[0] = body.person
+        sent += sender.send_body(body)
+    thread.join(ENDS_S)
     return sent

@@ -1,4 +1,5 @@
-"""A body as VMC (Virtual Motion Capture): turns of Unity's humanoid bones, one bundle per body.
+"""A body as VMC (Virtual Motion Capture): turns of Unity's humanoid bones, one bundle per body;
+postures as blend values.
 
 Source: the VMC protocol specification, version 2.x: addresses of a Performer. Unity's axes are
 left-handed, +x right of a person who faces +z, +y up, so x changes its sign.
@@ -13,7 +14,7 @@ from animator.skeleton.bone_turns import turned_axes
 from animator.skeleton.bones import Skeleton, offset_m, skeleton_of
 from animator.skeleton.limb_twist import Before
 from common.body.body import JOINT_NAMES, Vector
-from common.bus.messages import Body
+from common.bus.messages import Body, Posture
 from runtime.bridges.osc import message
 
 UNITY: Final = {
@@ -60,6 +61,19 @@ def step(state: Measured, body: Body) -> tuple[Measured, bytes | None]:
     axes, twists = turned_axes(state.skeleton, joints_m[None], time_s, state.before)
     packet = _packet(body, state.skeleton, joints_m[PELVIS], axes[:, 0])
     return state._replace(before=Before(twists[:, 0], body.captured_s)), packet
+
+
+def posture_packet(posture: Posture) -> bytes:
+    """A blend value of each posture that the model knows: 1 while it is in progress, else 0."""
+    from pythonosc.osc_bundle_builder import IMMEDIATELY, OscBundleBuilder
+
+    bundle: Any = OscBundleBuilder(IMMEDIATELY)
+    for name in sorted({*posture.log_likelihoods, posture.doing} - {""}):
+        value = [name, float(name == posture.doing)]
+        bundle.add_content(message("/VMC/Ext/Blend/Val", value, "sf"))
+    bundle.add_content(message("/VMC/Ext/Blend/Apply", [], ""))
+    packet: bytes = bundle.build().dgram
+    return packet
 
 
 def _packet(body: Body, skeleton: Skeleton, pelvis_m: Vector, axes: Any) -> bytes:

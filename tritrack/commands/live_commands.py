@@ -194,16 +194,22 @@ def waiting(settings: Settings, wait: bool) -> Settings:
 
 
 def bridge(
-    protocol: Annotated[Literal["osc", "vmc", "lsl"], typer.Argument(help="Protocol to send by.")],
+    protocol: Annotated[
+        Literal["osc", "vmc", "lsl", "websocket"], typer.Argument(help="Protocol to send by.")
+    ],
     to: Annotated[
-        str, typer.Option(help="HOST:PORT to send to; else this machine, 9000, of VMC 39539.")
+        str,
+        typer.Option(
+            help="HOST:PORT to send to, of a WebSocket to listen at; else this machine, 9000, "
+            "of VMC 39539, of a WebSocket 8765."
+        ),
     ] = "",
     endpoint: Annotated[str, typer.Option(help="Bus address of the run.")] = BusSettings().endpoint,
     room: Annotated[str, typer.Option(help="Room name of the run.")] = Settings().room,
     keys: Annotated[str, typer.Option(help="Folder of a client's keys, for a tls endpoint.")] = "",
     json_wanted: JsonWanted = False,
 ) -> None:
-    """Send live poses by OSC, VMC or LSL.
+    """Send live poses and postures by OSC, VMC, LSL or WebSocket.
 
     It waits for the run, a minute at most, and ends with it. LSL is the Lab Streaming Layer.
 
@@ -211,7 +217,8 @@ def bridge(
     """
     from runtime.bridges.bridging import bridge as run_bridge
 
-    there = to or ("127.0.0.1:39539" if protocol == "vmc" else "127.0.0.1:9000")
+    port = {"vmc": 39539, "websocket": 8765}.get(protocol, 9000)
+    there = to or f"127.0.0.1:{port}"
     sent = run_bridge(protocol, endpoint, room, there, console, keys)
     tell({"bodies": sent}, json_wanted, f"{counted(sent, 'body', 'bodies')} sent")
 
