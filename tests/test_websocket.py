@@ -1,5 +1,6 @@
 """The WebSocket, read back by another client, by the page in a browser and by the Unity script."""
 
+import http.client
 import json
 import shutil
 import socket
@@ -124,6 +125,13 @@ def test_where_other_machines_can_connect_a_token_is_due() -> None:
             connect(f"ws://127.0.0.1:{port}/bodies")
         with connect(f"ws://127.0.0.1:{port}/bodies?{at}") as program:
             assert program.close_code is None
+        page = http.client.HTTPConnection("127.0.0.1", port)
+        page.request("GET", f"/?{at}")
+        kept = page.getresponse()
+        cookie = {"Cookie": str(kept.headers["Set-Cookie"]).partition(";")[0]}
+        page = http.client.HTTPConnection("127.0.0.1", port)
+        page.request("GET", "/bodies.js", headers=cookie)
+        assert (kept.status, page.getresponse().status) == (303, 200)
     finally:
         bridge.close()
 

@@ -177,19 +177,13 @@ class PageServer:
             text = f"{MOST_BROWSERS} browsers look at this page already: close one of them\n"
             return connection.respond(HTTPStatus.SERVICE_UNAVAILABLE, text) if full else None
         if path == "/" and self._entrance.token and "token=" in query:
-            return Response(HTTPStatus.SEE_OTHER, "See Other", self._kept_token())
+            return Response(
+                HTTPStatus.SEE_OTHER, "See Other", kept_token(self._entrance, self._port)
+            )
         found = self._file_of(path)
         if found is None:
             return connection.respond(HTTPStatus.NOT_FOUND, "no such page\n")
         return Response(HTTPStatus.OK, "OK", headers_of(*found), found[1])
-
-    def _kept_token(self) -> Headers:
-        """Move the token from the address bar, where it could be read and shared, to a cookie
-        that no script reads and no foreign page makes a browser send."""
-        cookie = f"{cookie_of(self._port)}={self._entrance.token}; HttpOnly; SameSite=Lax; Path=/"
-        headers = headers_of("text/plain", b"")
-        headers.update({"Location": "/", "Set-Cookie": cookie})
-        return headers
 
     async def _attend(self, connection: ServerConnection) -> None:
         """Serve one browser until it disconnects."""
@@ -234,6 +228,15 @@ def site(*folders: Path) -> dict[str, File]:
         kind = mimetypes.guess_type(path.name)[0] or "application/octet-stream"
         files[f"/{path.name}"] = kind, path.read_bytes()
     return {**files, "/": files["/index.html"]}
+
+
+def kept_token(entrance: Entrance, port: int) -> Headers:
+    """Headers that move the token from the address bar, where it could be read and shared, to a
+    cookie that no script reads and no foreign page makes a browser send."""
+    cookie = f"{cookie_of(port)}={entrance.token}; HttpOnly; SameSite=Lax; Path=/"
+    headers = headers_of("text/plain", b"")
+    headers.update({"Location": "/", "Set-Cookie": cookie})
+    return headers
 
 
 def headers_of(kind: str, content: bytes) -> Headers:

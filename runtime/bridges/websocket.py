@@ -30,7 +30,7 @@ from animator.page.door import (
     refuse_port,
     unusable,
 )
-from animator.page.page_server import MOST_SAID_BYTES, headers_of, is_of_ours, site
+from animator.page.page_server import MOST_SAID_BYTES, headers_of, is_of_ours, kept_token, site
 from common.bus.mailbox import Mailbox
 from common.bus.messages import Body, Posture
 from common.config.part_settings import PageSettings
@@ -128,6 +128,9 @@ class WebSocket:
             full = len(self._waiting) >= MOST_PROGRAMS
             text = f"{MOST_PROGRAMS} programs listen already: close one of them\n"
             return connection.respond(HTTPStatus.SERVICE_UNAVAILABLE, text) if full else None
+        if path == "/" and self._entrance.token and "token=" in query:
+            kept = kept_token(self._entrance, self._port)
+            return Response(HTTPStatus.SEE_OTHER, "See Other", kept)
         found = site(SITE).get(path)
         if found is None:
             return connection.respond(HTTPStatus.NOT_FOUND, f"the WebSocket is at {SOCKET}\n")

@@ -15,7 +15,7 @@ const front = document.getElementById("front");
 
 function connect() {
   const scheme = location.protocol === "https:" ? "wss" : "ws";
-  const socket = new WebSocket(`${scheme}://${location.host}/bodies${location.search}`, "tritrack.json");
+  const socket = new WebSocket(`${scheme}://${location.host}/bodies`, "tritrack.json");
   socket.onopen = () => { state.textContent = "connected, waiting for bodies"; };
   socket.onmessage = ({ data }) => {
     const message = JSON.parse(data), said = message.body ?? message.posture;
