@@ -315,7 +315,7 @@ def test_a_server_that_never_listens_is_not_waited_for_for_ever(
 def test_text_says_how_it_is_written_and_pictures_do_not(server: PageServer) -> None:
     with urllib.request.urlopen(f"{server.address}/page.js") as answer:
         assert answer.headers["Content-Type"] == "text/javascript; charset=utf-8"
-    headers = page_server._headers("image/png", b"1234")
+    headers = page_server.headers_of("image/png", b"1234")
     assert headers["Content-Type"] == "image/png"
     assert headers["Content-Length"] == "4"
 
