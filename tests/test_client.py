@@ -213,3 +213,22 @@ def test_the_old_name_of_a_view_works_with_a_word_on_the_new_one() -> None:
         old = tritrack.Report
     assert old is tritrack.View
     assert "Report" not in tritrack.__all__
+
+
+def test_each_error_that_a_public_function_names_can_be_caught_by_a_public_name(
+    tmp_path: Path,
+) -> None:
+    import tritrack
+
+    with pytest.raises(tritrack.SettingsError):
+        tritrack.subscribe("tcp/127.0.0.1:7447", keys="keys")
+    with pytest.raises(tritrack.ClipError):
+        tritrack.track(tmp_path)
+    with pytest.raises(tritrack.PastRunError):
+        tritrack.load_run(tmp_path)
+    with pytest.raises(tritrack.ExportError):
+        tritrack.export(tmp_path, "fbx")  # type: ignore[arg-type]
+    with pytest.raises(tritrack.CalibrationError):
+        tritrack.Tracker(tmp_path / "none.json")
+    named = [getattr(tritrack, name) for name in tritrack.__all__ if name.endswith("Error")]
+    assert all(issubclass(each, Exception) for each in [*named, tritrack.DecoderDied])

@@ -1,9 +1,16 @@
 """The front door: the commands, and the public API for programs."""
 
-from typing import TYPE_CHECKING, Any
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, Final
 from warnings import warn
 
 if TYPE_CHECKING:
+    from common.bus.bus import BusError
+    from common.bus.bus_keys import KeysError
+    from common.config.part_settings import SettingsError
+    from common.rig.rig_file import CalibrationError
+    from common.video.clip_sources import ClipError
+    from common.video.pictures import DecoderDied
     from runtime.client import (
         ANGLE_NAMES,
         JOINT_NAMES,
@@ -18,6 +25,8 @@ if TYPE_CHECKING:
     )
     from runtime.steps.loop_bodies import Bodies
     from runtime.steps.tracker import Tracker
+    from runtime.store.past_run import PastRunError
+    from tritrack.export_formats import ExportError
     from tritrack.exporting import export
 
 __all__ = [
@@ -26,7 +35,15 @@ __all__ = [
     "POSE_INDEX",
     "Bodies",
     "Body",
+    "BusError",
+    "CalibrationError",
+    "ClipError",
+    "DecoderDied",
+    "ExportError",
+    "KeysError",
+    "PastRunError",
     "Posture",
+    "SettingsError",
     "Subscription",
     "Tracker",
     "View",
@@ -36,6 +53,21 @@ __all__ = [
     "track",
 ]
 
+ELSEWHERE: Final = {
+    "Bodies": "runtime.steps.loop_bodies",
+    "BusError": "common.bus.bus",
+    "CalibrationError": "common.rig.rig_file",
+    "ClipError": "common.video.clip_sources",
+    "DecoderDied": "common.video.pictures",
+    "ExportError": "tritrack.export_formats",
+    "KeysError": "common.bus.bus_keys",
+    "PastRunError": "runtime.store.past_run",
+    "SettingsError": "common.config.part_settings",
+    "Tracker": "runtime.steps.tracker",
+    "export": "tritrack.exporting",
+}
+"""Modules of the public names that are not in `runtime.client`."""
+
 
 def __getattr__(name: str) -> Any:
     """The public names, loaded on first use: a command must handle signals before."""
@@ -44,14 +76,4 @@ def __getattr__(name: str) -> Any:
         name = "View"
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    if name in ("Bodies", "Tracker"):
-        from runtime.steps import tracker
-
-        return getattr(tracker, name)
-    if name == "export":
-        from tritrack.exporting import export
-
-        return export
-    from runtime import client
-
-    return getattr(client, name)
+    return getattr(import_module(ELSEWHERE.get(name, "runtime.client")), name)

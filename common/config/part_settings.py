@@ -81,8 +81,11 @@ class SearchSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """The overlapped tritree's widths (P41), degrees."""
 
     arm_window_deg: int = 64
+    """Width of the first window of an arm's turn."""
     leg_window_deg: int = 32
+    """Width of the first window of a leg's turn."""
     stop_deg: int = 4
+    """Width at which a window is no longer halved."""
 
     def __post_init__(self) -> None:
         """Widths that halve down to the stop on whole degrees keep the grid exact (P36)."""
@@ -127,7 +130,7 @@ class PageSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """The live page."""
 
     port: int = 8080
-    """0: no page."""
+    """Port of this machine that it is opened on; 0: no page."""
     wait: bool = True
     """True: a recorded clip waits for the page to be opened, for half a minute at most."""
     save_lost: bool = False

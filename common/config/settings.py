@@ -33,6 +33,7 @@ class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     room: str = "room"
     """Name of the site: part of every topic, so that two rigs can share a network."""
     mode: Mode = "default"
+    """"default": our method; "paper" and "thesis": those of the two documents, to compare."""
     clip: str = ""
     """A clip folder with cam1.*, cam2.*; environment variables are replaced."""
     calibration: str = ""
