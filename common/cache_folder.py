@@ -98,22 +98,29 @@ def _made(folder: Path) -> Path:
     folder.mkdir(parents=True, exist_ok=True)
     if not os.access(folder, os.W_OK | os.X_OK):
         raise PermissionError(f"cannot write {folder}")
-    if folder.stat().st_uid not in (os.getuid(), ROOT.stat().st_uid, ADMINISTRATOR):
+    if folder.stat().st_uid not in (own_number(), ROOT.stat().st_uid, ADMINISTRATOR):
         raise PermissionError(f"{folder} is another user's, and so is what was compiled there")
     if new:
         log.warning("compiling for the first time, about a minute; kept in %s", folder)
     return folder
 
 
+def own_number() -> int:
+    """This user's number; 0, as of all files, where the system numbers no users."""
+    return os.getuid() if hasattr(os, "getuid") else 0
+
+
 def _private() -> Path:
     """A folder for temporary files that no other user can have written to: compiled code of
-    another user could be malicious."""
-    folder = Path(tempfile.gettempdir()) / f"tritrack-{os.getuid()}"
+    another user could be malicious. Without numbers of users the folder of temporary files is
+    this user's own."""
+    folder = Path(tempfile.gettempdir()) / f"tritrack-{own_number()}"
     with suppress(FileExistsError):
         folder.mkdir(mode=0o700)
     found = folder.lstat()
-    own = found.st_uid == os.getuid() and stat.S_IMODE(found.st_mode) == 0o700
-    return folder if stat.S_ISDIR(found.st_mode) and own else Path(tempfile.mkdtemp())
+    is_closed = stat.S_IMODE(found.st_mode) == 0o700 or not hasattr(os, "getuid")
+    is_own = found.st_uid == own_number() and is_closed
+    return folder if stat.S_ISDIR(found.st_mode) and is_own else Path(tempfile.mkdtemp())
 
 
 def used_s(path: Path) -> float:

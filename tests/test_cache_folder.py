@@ -82,6 +82,18 @@ def test_the_last_resort_is_this_users_alone(
     assert [record.levelno for record in told] == [logging.WARNING]
 
 
+def test_without_numbers_of_users_the_folder_of_temporary_files_is_ones_own(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As on Windows, where it is below each user's own folder and modes say nothing."""
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    monkeypatch.delattr(os, "getuid")
+    closed = no_folder(tmp_path / "closed")
+    (tmp_path / "tritrack-0").mkdir(mode=0o777)
+    (tmp_path / "tritrack-0").chmod(0o777)
+    assert first_writable([closed], "name") == tmp_path / "tritrack-0" / "name"
+
+
 def test_only_the_folders_that_were_used_last_stay(tmp_path: Path) -> None:
     for age in range(KEPT + 2):
         folder = tmp_path / f"tritrack-{age:032x}"

@@ -107,17 +107,17 @@ def test_a_full_disk_is_told_once_and_what_comes_when_it_has_room_is_kept(
     """It takes half a record, then nothing: of that record nothing is left."""
     one = Journal(tmp_path, HEAD)
     one.keep([body(0)])
-    written = os.pwrite
+    written = os.write
     calls = iter((10, None, None, None))
 
-    def full(file: int, data: bytes, at: int) -> int:
+    def full(file: int, data: bytes) -> int:
         most = next(calls)
         if most is None:
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-        return written(file, data[:most], at)
+        return written(file, data[:most])
 
     with monkeypatch.context() as patched:
-        patched.setattr(os, "pwrite", full)
+        patched.setattr(os, "write", full)
         one.keep([body(1)])
         assert len(one.odd) == 1, "it is told at once"
         one.keep([body(2)])
@@ -157,8 +157,8 @@ def test_a_journal_goes_with_its_run_and_one_of_a_run_cut_short_is_put_aside(
 def test_a_record_that_the_disk_takes_piece_by_piece_is_whole(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    written = os.pwrite
-    monkeypatch.setattr(os, "pwrite", lambda file, data, at: written(file, data[:7], at))
+    written = os.write
+    monkeypatch.setattr(os, "write", lambda file, data: written(file, data[:7]))
     one = Journal(tmp_path, HEAD)
     one.keep([body(0), body(1)])
     one.keep([body(2)])

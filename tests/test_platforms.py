@@ -3,6 +3,7 @@
 Children and workers are small modules of this test's own.
 """
 
+import ast
 import contextlib
 import os
 import subprocess
@@ -21,6 +22,7 @@ from test_own_process import SOON_S, ended_within, written
 from worker_jobs import heeds, says, sleeps
 
 from common.config.part_settings import SettingsError
+from common.packages import PACKAGES, ROOT
 from common.platform import platforms
 from common.platform.platform import Broken, Child, Job, Platform
 from common.platform.platforms import CHOICE, PLATFORMS, platform
@@ -310,3 +312,51 @@ def test_a_platform_that_is_not_there_is_refused_by_name(monkeypatch: pytest.Mon
     monkeypatch.setenv(CHOICE, "windows")
     with pytest.raises(SettingsError, match=r"TRITRACK_PLATFORM=windows: .* linux, portable"):
         platform.__wrapped__()
+
+
+UNIX_ONLY = {
+    "os": "fork forkpty getuid geteuid getgid getegid getgroups getpgid getpgrp setpgid setsid "
+    "killpg nice wait wait3 wait4 waitid mkfifo uname sysconf confstr sched_getaffinity "
+    "sched_setaffinity pread pwrite memfd_create getloadavg chown fchown fchmod statvfs fstatvfs "
+    "posix_spawn posix_fallocate posix_fadvise pipe2 dup3 sendfile set_blocking get_blocking "
+    "openpty ttyname getpriority setpriority lockf sync fdatasync register_at_fork pidfd_open "
+    "eventfd O_DIRECTORY O_NOFOLLOW O_CLOEXEC O_NONBLOCK WNOHANG WIFEXITED",
+    "signal": "SIGKILL SIGHUP SIGUSR1 SIGUSR2 SIGCHLD SIGSTOP SIGCONT SIGTSTP SIGQUIT SIGPIPE "
+    "SIGALRM SIGWINCH pthread_sigmask pthread_kill sigwait setitimer alarm pause SIG_BLOCK "
+    "SIG_SETMASK SIG_UNBLOCK",
+    "socket": "AF_UNIX SO_REUSEPORT SCM_RIGHTS",
+}
+"""What Python's documentation calls available on Unix alone, or on Windows after 3.11."""
+UNIX_MODULES = {"fcntl", "resource", "pwd", "grp", "termios", "tty", "pty", "posix", "syslog"}
+KNOWN = {
+    "common/cache_folder.py: os.getuid": "asked for before",
+    "common/video/complaints.py: os.set_blocking": "Windows has it from Python 3.12 on",
+    "runtime/serving/site_process.py: os.set_blocking": "of `tritrack serve` alone",
+    "tritrack/doctor/installation.py: os.sched_getaffinity": "asked for before",
+}
+"""What is used all the same, and why that does no harm."""
+
+
+def unix_only(path: Path) -> Iterator[str]:
+    for node in ast.walk(ast.parse(path.read_text())):
+        match node:
+            case ast.Attribute(value=ast.Name(id=module), attr=name):
+                if name in UNIX_ONLY.get(module, "").split():
+                    yield f"{module}.{name}"
+            case ast.Import(names=names):
+                yield from (each.name for each in names if each.name in UNIX_MODULES)
+            case ast.ImportFrom(module=str(module)):
+                if module in UNIX_MODULES or module in UNIX_ONLY:
+                    yield module
+
+
+def test_what_unix_alone_has_is_used_by_its_own_platform_alone() -> None:
+    """Else the first import on Windows or macOS would show it, where no test runs."""
+    found = {
+        f"{path.relative_to(ROOT).as_posix()}: {name}"
+        for package in PACKAGES
+        for path in (ROOT / package).rglob("*.py")
+        if "platform/linux" not in path.as_posix()
+        for name in unix_only(path)
+    }
+    assert found == set(KNOWN)

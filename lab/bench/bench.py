@@ -15,6 +15,7 @@ from typing import Final
 
 import msgspec
 import numpy as np
+import psutil
 from rich.console import Console
 from rich.table import Table
 
@@ -214,7 +215,7 @@ def machine() -> Facts:
     return {
         "cpu": model,
         "cores": os.cpu_count(),
-        "load_average": [round(load, 2) for load in os.getloadavg()],
+        "load_average": [round(load, 2) for load in psutil.getloadavg()],
         "python": platform.python_version(),
         "versions": {name: version(name) for name in VERSIONS_OF},
         "date": datetime.now(UTC).isoformat(timespec="seconds"),

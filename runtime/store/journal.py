@@ -25,6 +25,8 @@ from common.config.settings import Settings
 from common.npz_file import Facts
 
 NAME: Final = "journal.bin"
+NEW: Final = os.O_RDWR | os.O_CREAT | os.O_TRUNC | getattr(os, "O_BINARY", 0)
+"""How the file is opened: its bytes are left as they are, where a system changes ends of lines."""
 BEFORE: Final = "journal.{:06d}.bin"
 """Names of the parts before the newest."""
 MOST_BYTES: Final = 1 << 27
@@ -120,7 +122,7 @@ class Journal:
         if self._file is not None and full:
             self._turn()
         if self._file is None:
-            self._file = os.open(self._folder / NAME, os.O_RDWR | os.O_CREAT | os.O_TRUNC, 0o644)
+            self._file = os.open(self._folder / NAME, NEW, 0o644)
             self._bytes = self._bodies = 0
         if self._bytes == 0:
             new = self._head + new
@@ -155,7 +157,8 @@ class Journal:
         done = 0
         try:
             while done < len(new):
-                done += os.pwrite(self._file, new[done:], self._bytes + done)
+                os.lseek(self._file, self._bytes + done, os.SEEK_SET)
+                done += os.write(self._file, new[done:])
         except OSError:
             os.ftruncate(self._file, self._bytes)
             raise
