@@ -39,6 +39,7 @@ from tritrack.commands.live_commands import (
 )
 from tritrack.commands.model_commands import evaluate_app, teach, train
 from tritrack.commands.options import Out
+from tritrack.commands.report_commands import compare, report
 from tritrack.commands.rig_commands import calibrate_app
 
 app = typer.Typer(
@@ -135,7 +136,7 @@ def bench(
 
 COMMANDS: Final = (
     *(demo, live, serve, view, integrate, recognize, animate, metrics, bridge),
-    *(track, synth, train, teach, single, export, replay, retouch),
+    *(track, synth, train, teach, single, report, compare, export, replay, retouch),
     *(keys, doctor, bench),
 )
 """In the order of the help."""

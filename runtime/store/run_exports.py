@@ -17,6 +17,8 @@ OWN_NAMES: Final[dict[Format, str]] = {
 """Default file name in the run folder, by format."""
 EXPORTS: Final = (*OWN_NAMES.values(), "body.osim")
 """Including the model that belongs to OpenSim's motion."""
+PAGES: Final = ("report.html", "compare.html", "overlay.mp4", "overlay.avi")
+"""What is made of a run to look at."""
 
 
 def name_of_person(path: Path, person: int) -> Path:
@@ -25,11 +27,12 @@ def name_of_person(path: Path, person: int) -> Path:
 
 
 def remove_exports(folder: Path) -> None:
-    """Remove the exports of the run folder's previous poses, those of each person among them.
+    """Remove what was made of the run folder's previous poses: exports, those of each person among
+    them, and pages.
 
     Raises:
         OSError: When a file cannot be removed.
     """
     for path in list(folder.iterdir()):
-        if re.sub(r"_person[1-9]\d*(?=\.)", "", path.name) in EXPORTS:
+        if re.sub(r"_person[1-9]\d*(?=\.)", "", path.name) in (*EXPORTS, *PAGES):
             path.unlink(missing_ok=True)

@@ -29,6 +29,7 @@ from tritrack.commands.options import (
     size_given,
     writable,
 )
+from tritrack.commands.report_commands import line_of_reports
 
 
 def track(
@@ -50,6 +51,9 @@ def track(
     offset: Offset = None,
     background: NoBackground = None,
     record: Record = False,
+    report: Annotated[
+        bool, typer.Option(help="Write report.html, a video of all views, plots: tritrack report.")
+    ] = False,
     resume: Resume = False,
     force: Force = False,
     json_wanted: JsonWanted = False,
@@ -71,7 +75,13 @@ def track(
     seen = mode, size, landmarks, None if views is None else numbers_given(views), trust_calibration
     asked = Asked(*seen, record, resume, force, offset, background, people)
     facts = track_all(clips, out, asked, console)
-    tell(facts, json_wanted, line_of_runs(facts["clips"], out))
+    lines = [line_of_runs(facts["clips"], out)]
+    if report:
+        from tritrack.reporting.reporting import report_all
+
+        made = report_all([out / name for name in facts["clips"]], console)["reports"]
+        lines.append(line_of_reports([*made.values()]))
+    tell(facts, json_wanted, "\n".join(lines))
     refuse_unfollowed(facts["clips"])
 
 

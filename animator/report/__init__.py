@@ -1,0 +1,1 @@
+"""What a run shows, as a page: curves, belief, cycles, worst frames, and two runs compared."""
