@@ -199,8 +199,8 @@ def test_the_examples_of_the_reference_are_true(clip: Path, run: Path) -> None:
 
 
 def test_a_format_that_there_is_not_is_refused_by_name(run: Path) -> None:
-    with pytest.raises(ExportError, match="there is no format 'fbx': there are bvh, "):
-        tritrack.export(run, "fbx")  # type: ignore[arg-type]
+    with pytest.raises(ExportError, match="there is no format 'max': there are bvh, "):
+        tritrack.export(run, "max")  # type: ignore[arg-type]
     written = tritrack.export(str(run), "bvh", run / "further.bvh", scale="cm")
     assert written["files"] == [str(run / "further.bvh")]
     assert (run / "further.bvh").read_text().startswith("HIERARCHY")
@@ -227,7 +227,7 @@ def test_each_error_that_a_public_function_names_can_be_caught_by_a_public_name(
     with pytest.raises(tritrack.PastRunError):
         tritrack.load_run(tmp_path)
     with pytest.raises(tritrack.ExportError):
-        tritrack.export(tmp_path, "fbx")  # type: ignore[arg-type]
+        tritrack.export(tmp_path, "max")  # type: ignore[arg-type]
     with pytest.raises(tritrack.CalibrationError):
         tritrack.Tracker(tmp_path / "none.json")
     named = [getattr(tritrack, name) for name in tritrack.__all__ if name.endswith("Error")]

@@ -24,7 +24,7 @@ from common.bus.messages import Performance, Posture
 from runtime.bridges.osc import BridgeError
 from runtime.bridges.websocket import WAITING, WebSocket
 
-EXAMPLES = Path(__file__).parents[1] / "docs/examples"
+SCRIPTS = Path(__file__).parents[1] / "docs/scripts"
 UNITY = Path(__file__).parent / "data/unity_outside.cs"
 SCHEMA = Path(__file__).parents[1] / "docs/messages.schema.json"
 POSTURE = Posture(
@@ -200,7 +200,7 @@ def test_the_unity_script_reads_bodies_and_postures(bridge: WebSocket, tmp_path:
     if shutil.which("mcs") is None or shutil.which("mono") is None:
         pytest.skip("Debian's mono-mcs is not installed")
     program = tmp_path / "program.exe"
-    sources = [EXAMPLES / "TritrackBodies.cs", UNITY]
+    sources = [SCRIPTS / "TritrackBodies.cs", UNITY]
     subprocess.run(["mcs", f"-out:{program}", *sources], check=True, timeout=120)
     body = a_body(300, random_joints(3)[0])
     command = ["mono", str(program), socket_of(bridge)]

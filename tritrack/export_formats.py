@@ -78,6 +78,13 @@ def _gltf(run: PastRun, _name: str, _scale: Scale) -> Written:
     return Written(gltf_bytes(made.skeleton, made.motion, made.step_s), made.facts)
 
 
+def _fbx(run: PastRun, _name: str, _scale: Scale) -> Written:
+    from animator.exchange.fbx import fbx_bytes
+
+    made = _animated(run)
+    return Written(fbx_bytes(made.skeleton, made.motion, made.step_s), made.facts)
+
+
 def _usd(run: PastRun, name: str, _scale: Scale) -> Written:
     from animator.exchange.usd import usd_bytes
 
@@ -137,6 +144,7 @@ def _csv(run: PastRun, _name: str, _scale: Scale) -> Written:
 WRITERS: Final[dict[Format, Callable[[PastRun, str, Scale], Written]]] = {
     "bvh": _bvh,
     "gltf": _gltf,
+    "fbx": _fbx,
     "usd": _usd,
     "trc": _trc,
     "mot": _mot,

@@ -4,10 +4,11 @@ import re
 from pathlib import Path
 from typing import Final, Literal
 
-Format = Literal["bvh", "gltf", "usd", "trc", "mot", "c3d", "csv"]
+Format = Literal["bvh", "gltf", "fbx", "usd", "trc", "mot", "c3d", "csv"]
 OWN_NAMES: Final[dict[Format, str]] = {
     "bvh": "body.bvh",
     "gltf": "body.glb",
+    "fbx": "body.fbx",
     "usd": "body.usdc",
     "trc": "markers.trc",
     "mot": "body.mot",

@@ -1,4 +1,4 @@
-// What docs/examples/TritrackBodies.cs uses of Unity, and a program that runs it outside.
+// What docs/scripts/TritrackBodies.cs uses of Unity, and a program that runs it outside.
 namespace UnityEngine {
   public class MonoBehaviour { public Transform transform = new Transform(); }
   public struct Vector3 { public float x, y, z; public Vector3(float a, float b, float c) { x = a; y = b; z = c; } }
