@@ -64,6 +64,7 @@ def places_of(file: Any) -> tuple[dict[str, np.ndarray], dict[str, Rotation]]:
         own = tracks.get((number, "rotation"))
         places[node.name] = place + turn.apply(shift + np.zeros((40, 3)))
         turns[node.name] = turn if own is None else turn * Rotation.from_quat(own)
+        assert own is not None or node.rotation is None, "only ends have no track"
         for child in node.children or ():
             walk(child, places[node.name], turns[node.name])
 
@@ -97,13 +98,39 @@ def test_every_stick_is_bound_to_its_bone_and_goes_with_it() -> None:
     inverse = array_of(file, file.skins[0].inverseBindMatrices).reshape(-1, 4, 4)
     expected = joints_of(skeleton, motion)[20]
     for i, bone in enumerate(skeleton.bones):
-        at_bone = skin[owner == i] + inverse[i, 3, :3]
+        at_bone = skin[owner == i] @ inverse[i, :3, :3] + inverse[i, 3, :3]
         moved = places[bone.name][20] + turns[bone.name][20].apply(at_bone)
         ends = [expected[JOINT_NAMES.index(name)] for name in (bone.starts, bone.ends)]
         along = (ends[1] - ends[0]) / np.linalg.norm(ends[1] - ends[0])
         heights = (moved - ends[0]) @ along
         assert heights.min() == pytest.approx(0.0, abs=1e-3)
         assert heights.max() == pytest.approx(float(np.linalg.norm(ends[1] - ends[0])), abs=1e-3)
+
+
+def test_at_rest_the_feet_are_on_the_floor_and_each_bone_points_to_its_end_by_its_own_y() -> None:
+    """As Blender and engines draw bones: along a node's own +y."""
+    pygltflib = pytest.importorskip("pygltflib", reason="pip install pygltflib")
+    skeleton, _, content = made()
+    file = pygltflib.GLTF2.load_from_bytes(content)
+    places, turns = {}, {}
+
+    def walk(number: int, place: np.ndarray, turn: Rotation) -> None:
+        node = file.nodes[number]
+        places[node.name] = place + turn.apply(np.array(node.translation))
+        turns[node.name] = turn * Rotation.from_quat(node.rotation or [0.0, 0.0, 0.0, 1.0])
+        for child in node.children or ():
+            walk(child, places[node.name], turns[node.name])
+
+    walk(0, np.zeros(3), Rotation.identity())
+    assert min(place[1] for place in places.values()) == pytest.approx(0.0, abs=1e-6)
+    for i, bone in enumerate(skeleton.bones[1:], 1):
+        along = skeleton.tips_m[i] / np.linalg.norm(skeleton.tips_m[i])
+        assert turns[bone.name].apply([0.0, 1.0, 0.0]) == pytest.approx(along, abs=1e-5)
+    inverse = array_of(file, file.skins[0].inverseBindMatrices).reshape(-1, 4, 4)
+    for i, bone in enumerate(skeleton.bones):
+        assert places[bone.name] @ inverse[i, :3, :3] + inverse[i, 3, :3] == pytest.approx(
+            np.zeros(3), abs=1e-5
+        )
 
 
 def test_a_viewer_of_meshes_opens_it(tmp_path: Path) -> None:

@@ -1,7 +1,8 @@
 """glTF: an animated skinned stick figure in one binary file, for browsers and engines.
 
 Source: Khronos glTF 2.0 specification, sections 3.6 (accessors), 3.7.3 (skins), 3.11 (animations),
-4 (GLB). Metres, +y up, the figure faces +z, as the specification requires.
+4 (GLB). Metres, +y up, the figure faces +z, as the specification requires. Each node's own +y
+points along its bone, by which programs draw bones; the hips' own axes are the world's.
 """
 
 import struct
@@ -10,16 +11,19 @@ from typing import Any, Final
 import msgspec
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
 from animator.exchange.sticks import COLOUR, Sticks, sticks_of
 from animator.skeleton.bones import BONES, Motion, Skeleton, offset_m, rest_origins_m
-from animator.turns import unbroken
+from animator.turns import arc, unbroken
+from common.body.body import Vector
 from common.npz_file import Facts
 
 FLOAT, USHORT, UINT = 5126, 5123, 5125
 VERTICES, INDICES = 34962, 34963
 """What the specification calls ARRAY_BUFFER and ELEMENT_ARRAY_BUFFER."""
 KINDS: Final = {(): "SCALAR", (3,): "VEC3", (4,): "VEC4", (4, 4): "MAT4"}
+UP: Final = np.array([0.0, 1.0, 0.0])
 DTYPES: Final = {"float32": FLOAT, "uint16": USHORT, "uint32": UINT}
 
 
@@ -62,14 +66,17 @@ def gltf_bytes(skeleton: Skeleton, motion: Motion, step_s: float) -> bytes:
     """
     buffer = _Buffer()
     figure = _figure(buffer, sticks_of(skeleton))
-    moves = _animation(buffer, motion, step_s)
+    rests = rest_turns(skeleton)
+    nodes = _nodes(skeleton, rests)
+    moves = _animation(buffer, motion, step_s, rests)
     inverse = np.tile(np.eye(4, dtype=np.float32), (len(skeleton.bones), 1, 1))
-    inverse[:, 3, :3] = -rest_origins_m(skeleton)  # a matrix is stored column by column
+    inverse[:, :3, :3] = rests.as_matrix()  # stored column by column: this is its transpose
+    inverse[:, 3, :3] = rests.inv().apply(-rest_origins_m(skeleton))
     content = {
         "asset": {"version": "2.0", "generator": "tritrack"},
         "scene": 0,
-        "scenes": [{"nodes": [0, len(_nodes(skeleton)) - 1]}],
-        "nodes": _nodes(skeleton),
+        "scenes": [{"nodes": [0, len(nodes) - 1]}],
+        "nodes": nodes,
         "meshes": [{"name": "Body", "primitives": [figure]}],
         "materials": [
             {"pbrMetallicRoughness": {"baseColorFactor": [*COLOUR, 1.0], "metallicFactor": 0.0}}
@@ -89,21 +96,48 @@ def gltf_bytes(skeleton: Skeleton, motion: Motion, step_s: float) -> bytes:
     return _glb(msgspec.json.encode(content), bytes(buffer.data))
 
 
-def _nodes(skeleton: Skeleton) -> list[Facts]:
+def rest_turns(skeleton: Skeleton) -> Rotation:
+    """Turns of the nodes in the world at rest, (bones,): +y to each bone's tip."""
+    along = skeleton.tips_m.copy()
+    along[0] = UP
+    return arc(UP, along)
+
+
+def _nodes(skeleton: Skeleton, rests: Rotation) -> list[Facts]:
     """The bones, then a node at the end of each bone without children, then the skinned mesh."""
     nodes: list[Facts] = []
     for i, bone in enumerate(skeleton.bones):
         children = [n for n, other in enumerate(skeleton.bones) if other.parent == i]
         nodes.append(
-            {"name": bone.name, "translation": offset_m(skeleton, i).tolist()}
+            {
+                "name": bone.name,
+                "translation": _offset_m(skeleton, rests, i).tolist(),
+                "rotation": _in_parent(rests, i).as_quat().tolist(),
+            }
             | ({"children": children} if children else {})
         )
     for i, node in enumerate(nodes[:]):
         if "children" not in node:
             node["children"] = [len(nodes)]
-            end = {"name": f"{BONES[i].name}_end", "translation": skeleton.tips_m[i].tolist()}
-            nodes.append(end)
+            tip_m = rests[i].inv().apply(skeleton.tips_m[i])
+            nodes.append({"name": f"{BONES[i].name}_end", "translation": tip_m.tolist()})
     return [*nodes, {"name": "Body", "mesh": 0, "skin": 0}]
+
+
+def _offset_m(skeleton: Skeleton, rests: Rotation, bone: int) -> Vector:
+    """From the parent's joint to the bone's own in the parent's axes at rest, (3,); of the hips
+    from the floor."""
+    if bone == 0:
+        place: Vector = rest_origins_m(skeleton)[0]
+        return place
+    own: Vector = rests[BONES[bone].parent].inv().apply(offset_m(skeleton, bone))
+    return own
+
+
+def _in_parent(rests: Rotation, bone: int) -> Rotation:
+    """A node's turn at rest in its parent's axes."""
+    parent = BONES[bone].parent
+    return rests[bone] if parent < 0 else rests[parent].inv() * rests[bone]
 
 
 def _figure(buffer: _Buffer, sticks: Sticks) -> Facts:
@@ -122,10 +156,14 @@ def _figure(buffer: _Buffer, sticks: Sticks) -> Facts:
     }
 
 
-def _animation(buffer: _Buffer, motion: Motion, step_s: float) -> Facts:
+def _animation(buffer: _Buffer, motion: Motion, step_s: float, rests: Rotation) -> Facts:
+    """Of turns that are the identity at rest, those of nodes that rest as these."""
     times = buffer.add((np.arange(len(motion.root_m)) * step_s).astype(np.float32))
     tracks = [(0, "translation", motion.root_m)]
-    tracks += [(i, "rotation", unbroken(own.as_quat())) for i, own in enumerate(motion.turns)]
+    for i, own in enumerate(motion.turns):
+        parent = BONES[i].parent
+        turned = own * rests[i] if parent < 0 else rests[parent].inv() * own * rests[i]
+        tracks.append((i, "rotation", unbroken(turned.as_quat())))
     samplers = [
         {"input": times, "output": buffer.add(values.astype(np.float32))}
         for _node, _path, values in tracks

@@ -61,6 +61,7 @@ def _define_skeleton(stage: "Usd.Stage", skeleton: Skeleton) -> "UsdSkel.Skeleto
     bones = UsdSkel.Skeleton.Define(stage, "/Body/Skeleton")
     bones.CreateJointsAttr(_paths(skeleton))
     offsets_m = np.array([offset_m(skeleton, i) for i in range(len(skeleton.bones))])
+    offsets_m[0] = rest_origins_m(skeleton)[0]
     bones.CreateRestTransformsAttr(Vt.Matrix4dArray.FromNumpy(_shifts(offsets_m)))
     bones.CreateBindTransformsAttr(Vt.Matrix4dArray.FromNumpy(_shifts(rest_origins_m(skeleton))))
     return bones

@@ -143,11 +143,12 @@ def offset_m(skeleton: Skeleton, bone: int) -> Vector:
 
 
 def rest_origins_m(skeleton: Skeleton) -> Vector:
-    """Places of the bones' joints at rest, (bones, 3), the hips at the origin."""
+    """Places of the bones' joints at rest, (bones, 3), the feet on the floor."""
     origins = np.zeros((len(skeleton.bones), 3))
     for i, bone in enumerate(skeleton.bones):
         if bone.parent >= 0:
             origins[i] = origins[bone.parent] + offset_m(skeleton, i)
+    origins[:, 1] -= min(0.0, float((origins + skeleton.tips_m)[:, 1].min()))
     return origins
 
 
