@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation, Slerp
 
-from animator.skeleton.bones import Motion
+from animator.skeleton.bones import Motion, Skeleton, joints_of
 from common.body.body import Vector
 
 Frames = NDArray[np.int64]
@@ -35,6 +35,33 @@ def key_frames(clarity: Vector, apart: int = APART) -> Frames:
         if len(stretch := posed[(posed >= start) & (posed < start + apart)])
     ]
     return np.unique([posed[0], *clearest, posed[-1]])
+
+
+def kept_within(skeleton: Skeleton, motion: Motion, keys: Frames, most_m: float) -> Frames:
+    """The key frames and as many more as keep what is interpolated near to the motion.
+
+    Of each stretch in which a joint is farther off the frame of the farthest is added, until there
+    is none.
+
+    Args:
+        skeleton: The body.
+        motion: (n,) its motion, a row a frame.
+        keys: Rows of it, at least one, in order.
+        most_m: How far a joint may be off, metres.
+
+    Source: the refinement of Douglas and Peucker 1973.
+    """
+    frames, true_m = np.arange(len(motion.root_m)), joints_of(skeleton, motion)
+    while True:
+        drawn_m = joints_of(skeleton, between(keys, at(motion, keys), frames))
+        off_m = np.linalg.norm(drawn_m - true_m, axis=2).max(axis=1)
+        off_m[keys] = 0.0
+        stretches = np.split(frames, keys)
+        worst = [rows[np.argmax(off_m[rows])] for rows in stretches if len(rows)]
+        added = [row for row in worst if off_m[row] > most_m]
+        if not added:
+            return keys
+        keys = np.union1d(keys, added)
 
 
 def between(keys: Frames | Vector, motion: Motion, frames: Frames) -> Motion:

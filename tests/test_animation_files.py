@@ -50,10 +50,10 @@ def test_key_frames_are_told_by_the_frames_of_the_film_and_how_far_they_are_off(
     """Sinking evenly is the same between key frames as in them."""
     assert write_files(tmp_path, run(), None) == []
     told = json.loads((tmp_path / "keyframes.json").read_text())
-    assert told["frames"] == [100, 105, 111, 112, 113], "the clearest of six, and the ends"
-    assert (told["of"], told["interpolated"]) == (FRAMES, FRAMES - 5)
+    assert {100, 105, 111, 112, 113} <= {*told["frames"]}, "the clearest of six, and the ends"
+    assert (told["of"], told["interpolated"]) == (FRAMES, FRAMES - len(told["frames"]))
     off_mm = told["off_body_bvh_mm"]
-    assert off_mm["median"] <= off_mm["p95"] < 20.0
+    assert off_mm["median"] <= off_mm["p95"] <= off_mm["most"] <= 10.0
     for name in ("body.bvh", "keyframes.bvh"):
         assert f"Frames: {FRAMES}" in (tmp_path / name).read_text()
         assert "Frame Time: 0.0666" in (tmp_path / name).read_text()

@@ -2,10 +2,12 @@
 
 import numpy as np
 import pytest
+from moving import random_joints
 from scipy.spatial.transform import Rotation
 
-from animator.inbetween import between, key_frames
-from animator.skeleton.bones import BONES, Motion
+from animator.bvh import steady
+from animator.inbetween import at, between, kept_within, key_frames
+from animator.skeleton.bones import BONES, Motion, joints_of
 
 
 @pytest.mark.parametrize(("frames", "thesis"), [(82, 17), (200, 33)], ids=["walking", "dancing"])
@@ -59,3 +61,23 @@ def test_before_the_first_key_and_after_the_last_the_pose_is_held() -> None:
     for own, given_turns in zip(found.turns, given_motion.turns, strict=True):
         assert own[[0, 3]].approx_equal(given_turns).all()
     assert np.allclose(between(np.array([5]), motion(1), np.arange(9)).root_m, motion(1).root_m)
+
+
+def test_more_frames_become_keys_until_what_lies_between_is_near() -> None:
+    skeleton, moved, _ = steady(random_joints(3), np.arange(40) / 15)
+    counts = []
+    for most_m in (0.01, 0.03, 0.1):
+        keys = kept_within(skeleton, moved, np.array([0, 39]), most_m)
+        drawn = between(keys, at(moved, keys), np.arange(40))
+        off_m = np.linalg.norm(joints_of(skeleton, drawn) - joints_of(skeleton, moved), axis=2)
+        assert off_m.max() <= most_m
+        assert {0, 39} <= set(keys.tolist())
+        counts.append(len(keys))
+    assert 40 >= counts[0] > counts[1] > counts[2] > 2
+
+
+def test_a_motion_that_is_even_between_its_keys_gets_none_more() -> None:
+    skeleton, moved, _ = steady(random_joints(3), np.arange(40) / 15)
+    keys = np.array([0, 9])
+    even = between(keys, at(moved, np.array([0, 39])), np.arange(10))
+    assert kept_within(skeleton, even, keys, 1e-6).tolist() == [0, 9]

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from animator.bvh import bvh_text, steady
 from animator.even_steps import NoMotion
-from animator.inbetween import at, between, key_frames
+from animator.inbetween import at, between, kept_within, key_frames
 from animator.skeleton.bones import joints_of
 from common.atomic_file import replacing
 from common.body.body import JOINT_NAMES
@@ -26,6 +26,8 @@ NAMES: Final = (
     *("body.bvh", "keyframes.bvh", "keyframes.json"),
 )
 """The written files; each is optional."""
+MOST_OFF_M: Final = 0.010
+"""How far a joint of `keyframes.bvh` may be from `body.bvh`, metres."""
 FLAG: Final = (0, 0, 255)
 """Colour of the hatching over pixels that were never uncovered."""
 
@@ -75,7 +77,7 @@ def _animate(folder: Path, arrays: Arrays) -> list[str]:
         return [f"there is no animation: {error}"]
     rows = steps.nearest()
     clarity = np.where(steps.seen, arrays["confidence"][rows].mean(axis=1), np.nan)
-    keys = key_frames(clarity)
+    keys = kept_within(skeleton, motion, key_frames(clarity), MOST_OFF_M)
     drawn = between(keys, at(motion, keys), np.arange(steps.frames))
     off_m = np.linalg.norm(joints_of(skeleton, drawn) - joints_of(skeleton, motion), axis=2)
     off_m = off_m[:, : len(JOINT_NAMES)]
@@ -87,6 +89,7 @@ def _animate(folder: Path, arrays: Arrays) -> list[str]:
         "off_body_bvh_mm": {
             "median": round(1e3 * float(np.median(off_m)), 2),
             "p95": round(1e3 * float(np.percentile(off_m, 95)), 2),
+            "most": round(1e3 * float(off_m.max()), 2),
         },
     }
     _write(folder / "body.bvh", bvh_text(skeleton, motion, steps.step_s).encode())
