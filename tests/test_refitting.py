@@ -19,7 +19,7 @@ from common.config.settings import Settings
 from common.notes.notes import Note, Notes
 from common.notes.notes_file import save_notes
 from runtime.store.runs import RunError
-from tritrack.exporting import export_run
+from tritrack.exporting import ExportError, export_run
 from tritrack.single import refitting
 from tritrack.single.refitting import Said, refit
 from tritrack.single.single import Given, single_all
@@ -234,11 +234,12 @@ def test_the_process_says_each_twentieth_of_its_four_steps_and_how_it_ended(
     assert said.sent == [Said("failed", "no room; the run is as it was")]
 
 
-def test_new_files_take_the_place_of_old_ones_and_exports_of_the_old_fit_go(
+def test_new_files_take_the_place_of_old_ones_and_exports_of_the_old_fit_are_made_anew(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     """The notes of the user, say, are no file of the fit: they stay."""
-    for name in ("poses.npz", "body.bvh", "keyframes.bvh", "body.glb", "notes.toml"):
+    old = ("poses.npz", "body.bvh", "keyframes.bvh", "body.glb", "markers.trc", "notes.toml")
+    for name in old:
         (tmp_path / name).write_text("old")
 
     def fitted(new: Path, settings: Any, notes: Notes, tell: Any, stop: Any) -> None:
@@ -247,11 +248,21 @@ def test_new_files_take_the_place_of_old_ones_and_exports_of_the_old_fit_go(
         for name in ("poses.npz", "body.bvh"):
             (new / name).write_text("new")
 
+    def exported(folder: Path, to: str, out: None) -> None:
+        if to == "trc":
+            raise ExportError("no room")
+        assert (folder / "poses.npz").read_text() == "new"
+        (folder / "body.glb").write_text(f"new {to}")
+
     monkeypatch.setattr(refitting, "_fitted_apart", fitted)
-    refit(tmp_path, Settings(), SAID, str, threading.Event())
+    monkeypatch.setattr(refitting, "export_run", exported)
+    told: list[str] = []
+    refit(tmp_path, Settings(), SAID, told.append, threading.Event())
+    assert told == ["markers.trc was not made anew: no room"]
     assert {path.name: path.read_text() for path in tmp_path.iterdir()} == {
         "poses.npz": "new",
         "body.bvh": "new",
+        "body.glb": "new gltf",
         "notes.toml": "old",
     }
     gone = tmp_path / "gone"

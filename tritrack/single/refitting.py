@@ -17,11 +17,13 @@ from animator.retouching.fitting import FitError
 from animator.video_file import VideoError
 from common.config.settings import Settings
 from common.notes.notes import Notes
-from runtime.store.run_exports import EXPORTS
+from runtime.store.past_run import PastRunError
+from runtime.store.run_exports import EXPORTS, OWN_NAMES, Format
 from runtime.store.runs import RunError
 from runtime.terminal import Tell
 from runtime.unfinished.resuming import Begun
 from runtime.unfinished.work import InMemory
+from tritrack.exporting import ExportError, export_run
 from tritrack.single.animation_files import NAMES
 from tritrack.single.single import PASSES, UNUSABLE, Job, follow
 
@@ -49,7 +51,7 @@ def refit(
 ) -> None:
     """Fit a run's video with these notes; its files are replaced when all new ones are written.
 
-    Exports of the previous fit are removed, and so are files that the new one does not have.
+    Exports of the previous fit are made anew; files that the new one does not have are removed.
 
     Args:
         folder: Folder of a run that `tritrack single` wrote.
@@ -66,15 +68,25 @@ def refit(
             new = Path(scratch) / folder.name
             _fitted_apart(new, settings, notes, tell, stop)
             made = [file.name for file in sorted(new.iterdir())]
+            had = [to for to, name in OWN_NAMES.items() if (folder / name).is_file()]
             for name in made:
                 os.replace(new / name, folder / name)
             for name in {*EXPORTS, *NAMES}.difference(made):
                 (folder / name).unlink(missing_ok=True)
+            _renew(folder, [to for to in had if OWN_NAMES[to] not in made], tell)
     except OSError as error:
         raise FitError(
             f"cannot write {error.filename or folder}: {error.strerror}; see that you may write "
             "there and that its disk has room, then fit again"
         ) from error
+
+
+def _renew(folder: Path, formats: list[Format], tell: Callable[[str], object]) -> None:
+    for to in formats:
+        try:
+            export_run(folder, to, None)
+        except (ExportError, PastRunError) as error:
+            tell(f"{OWN_NAMES[to]} was not made anew: {error}")
 
 
 def _fitted_apart(
