@@ -52,10 +52,13 @@ def test_what_was_said_is_in_the_run_and_as_single_would_have_it(run: Path) -> N
     before, heard = files_of(run), list[str]()
     refit(run, settings_of(run.with_suffix(".avi")), SAID, heard.append, threading.Event())
     after = files_of(run)
-    exported = {"body.glb", "body.mot", "body.osim"}
-    assert after.keys() == before.keys() - exported, (
-        "nothing is left over, of these poses or others"
-    )
+    assert after.keys() == before.keys()
+    exported = ("body.glb", "body.mot", "body.osim")
+    own = {name: (run / name).read_bytes() for name in exported}
+    for to in ("gltf", "mot"):
+        export_run(run, to, None)
+    assert own == {name: (run / name).read_bytes() for name in exported}, "of the new poses"
+    assert own["body.glb"] != before["body.glb"]
     assert any("posing, " in text for text in heard)
     notes = run.parent / "said.toml"
     save_notes(notes, SAID)
