@@ -18,6 +18,7 @@ from common.config.part_settings import CameraSettings
 from common.config.settings import Settings
 from common.notes.notes import Note, Notes
 from common.notes.notes_file import save_notes
+from runtime.store.run_exports import Format
 from runtime.store.runs import RunError
 from tritrack.exporting import ExportError, export_run
 from tritrack.single import refitting
@@ -46,7 +47,8 @@ def files_of(run: Path) -> dict[str, bytes]:
 @pytest.mark.slow
 def test_what_was_said_is_in_the_run_and_as_single_would_have_it(run: Path) -> None:
     """The same poses as `tritrack single` gives with these notes."""
-    for to in ("gltf", "mot"):
+    formats: tuple[Format, ...] = ("gltf", "mot")
+    for to in formats:
         export_run(run, to, None)
     assert (run / "body.osim").exists()
     before, heard = files_of(run), list[str]()
@@ -55,7 +57,7 @@ def test_what_was_said_is_in_the_run_and_as_single_would_have_it(run: Path) -> N
     assert after.keys() == before.keys()
     exported = ("body.glb", "body.mot", "body.osim")
     own = {name: (run / name).read_bytes() for name in exported}
-    for to in ("gltf", "mot"):
+    for to in formats:
         export_run(run, to, None)
     assert own == {name: (run / name).read_bytes() for name in exported}, "of the new poses"
     assert own["body.glb"] != before["body.glb"]
