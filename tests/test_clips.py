@@ -343,6 +343,19 @@ def test_views_of_other_rates_are_looked_at_at_the_slower_ones(
     assert any("cam2.avi those 6 are looked at" in warning for warning in clip.warnings)
 
 
+def test_each_camera_has_a_rate_of_its_own_where_that_is_told(
+    folder: Path, decoder: Decoder
+) -> None:
+    """Both files say 15: of the faster one every second frame is looked at."""
+    tell(folder, fps={"cam1": 12.5, "cam2": 25})
+    clip = opened(folder, decoder)
+    assert [view.fps for view in clip.views] == [12.5, 12.5]
+    assert [view.picked for view in clip.views] == [(), tuple(range(0, 12, 2))]
+    assert clip.views[1].captured_s(2) == pytest.approx(0.08)
+    tell(folder, fps={"cam2": 30})
+    assert [view.fps for view in opened(folder, decoder).views] == [15.0, 15.0]
+
+
 def test_a_view_whose_capture_times_are_told_keeps_its_frames(
     folder: Path, decoder: Decoder
 ) -> None:
@@ -463,7 +476,8 @@ def test_two_videos_of_one_camera_are_not_guessed_between(folder: Path, decoder:
     ("text", "word"),
     [
         ("{", "cannot read"),
-        ('{"fps": "fast"}', "fps must be a number, got text"),
+        ('{"fps": "fast"}', "fps must be a number or a table, got text"),
+        ('{"fps": {"cam1": 15, "cam2": -3}}', "rate of -3"),
         ('{"fps": 0}', "rate of 0"),
         ('{"capture_s": {"cam1": [0.0, 0.2, 0.1]}}', "capture_s of cam1 does not increase"),
     ],

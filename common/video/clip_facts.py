@@ -35,9 +35,14 @@ class Meta(msgspec.Struct, frozen=True):
     take: int = 0
     acts: tuple[Act, ...] = ()
     """The performances in a clip that holds several."""
-    fps: float | None = None
+    fps: float | dict[str, float] | None = None
+    """Rate of all videos, or of each by camera."""
     capture_s: dict[str, tuple[float, ...]] = {}
     """Capture times of a camera's frames, where frames are missing."""
+
+    def fps_of(self, camera: str) -> float | None:
+        """The rate that is told of a camera's video."""
+        return self.fps.get(camera) if isinstance(self.fps, dict) else self.fps
 
 
 class ClipView(msgspec.Struct, frozen=True):

@@ -123,8 +123,9 @@ def _meta(folder: Path) -> Meta:
     except (OSError, msgspec.DecodeError, RecursionError) as error:
         why = error.strerror if isinstance(error, OSError) else explained(error, Meta)
         raise ClipError(f"cannot read {path} ({why}): mend it or take it away") from error
-    if meta.fps is not None and not (math.isfinite(meta.fps) and meta.fps > 0):
-        raise ClipError(f"{path} names a rate of {meta.fps} frames a second: mend or remove fps")
+    for told_hz in meta.fps.values() if isinstance(meta.fps, dict) else (meta.fps,):
+        if told_hz is not None and not (math.isfinite(told_hz) and told_hz > 0):
+            raise ClipError(f"{path} names a rate of {told_hz} frames a second: mend or remove fps")
     for name, moments in meta.capture_s.items():
         if not all(earlier < later for earlier, later in pairwise(moments)):
             raise ClipError(f"{path}: capture_s of {name} does not increase: mend or remove it")
@@ -136,7 +137,7 @@ def _view(named: ViewSource, settings: Settings, meta: Meta, decoder: Decoder) -
     if named.settings.background:
         _refuse_another_scene(named, probed(named.settings.background, decoder), info)
     of_a_file = is_recorded(named.source)
-    told_hz = settings.fps or meta.fps
+    told_hz = settings.fps or meta.fps_of(named.name)
     fps = (told_hz or info.fps) if of_a_file else (info.fps or CAMERA_HZ)
     if fps <= 0 and info.frames == 1:
         raise ClipError(f"{named.source} is one picture: name a video")

@@ -23,7 +23,7 @@ from common.video.clip_facts import (
     uprights_of,
     whole_rig,
 )
-from common.video.clip_sources import offsets_of
+from common.video.clip_sources import Offsets, offsets_of
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
 from common.video.frame_cache import FrameCache
@@ -54,6 +54,7 @@ from runtime.offline.rig_check import (
 )
 from runtime.offline.rig_from_person import Looked, by_person, calibration_facts
 from runtime.offline.video_tracking import Heard, VideoInput, follow_clip, unseen
+from runtime.sound_clocks import by_ear
 from runtime.steps.method_cameras import (
     refuse_everyone_unmeasured,
     refuse_too_many,
@@ -103,6 +104,8 @@ class _Job(NamedTuple):
     sources: Sources
     watch: Watch | None
     course: Course
+    heard: Offsets
+    """Delays that the videos' sounds tell."""
 
 
 class _Followed(NamedTuple):
@@ -137,7 +140,7 @@ def track_clip(
         SettingsError: When the source of landmarks cannot be used.
     """
     began = time.perf_counter()
-    clip = open_clip(settings, decoders.of[1], views)
+    clip, settings, heard = by_ear(open_clip(settings, decoders.of[1], views), settings)
     method = method or METHODS[settings.mode]
     alone = len(clip.views) == 1
     refuse_too_many(clip, method)
@@ -145,7 +148,7 @@ def track_clip(
         refuse_everyone_unmeasured(clip, settings)
         return _in_two_passes(clip, settings, method, decoders, course)
     with outside_sources(settings, clip.views) as sources:
-        job = _Job(settings, method, decoders, sources, watch, course)
+        job = _Job(settings, method, decoders, sources, watch, course, heard)
         looked = _as_left(by_person(clip, settings, method, decoders.of, sources), course)
         refuse_uncalibrated(looked.clip, looked.warning)
         refuse_everyone_unmeasured(looked.clip, settings)
@@ -198,7 +201,7 @@ def _told(looked: Looked, job: _Job, followed: _Followed, clocks: Clocks) -> Tra
     )
     facts = _facts(ready, done, job.sources) | calibration_facts(looked) | trust
     given = offsets_of(settings)
-    facts |= moved_facts(done.bodies) | clock_facts(clip, looked.clocks or clocks, given)
+    facts |= moved_facts(done.bodies) | clock_facts(clip, looked.clocks or clocks, given, job.heard)
     facts["warnings"] += doubts(facts)
     return Tracked(clip, doubted(done.bodies, clip, clocks, given), facts)
 

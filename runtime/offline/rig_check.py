@@ -23,6 +23,9 @@ MOST_FRAMES: Final = 3_000
 """Number of a run's latest frames that are kept."""
 
 
+NONE: Final[Offsets] = {}
+
+
 class Seen(NamedTuple):
     """The observations so far."""
 
@@ -140,7 +143,7 @@ def doubts(facts: Facts) -> list[str]:
     return [f"the calibration is not believable: {said}"]
 
 
-def clock_facts(clip: Clip, clocks: Clocks, given: Offsets) -> Facts:
+def clock_facts(clip: Clip, clocks: Clocks, given: Offsets, heard: Offsets = NONE) -> Facts:
     """For the summary: the time by which each view after the first was set back, and other
     possible delays. Of two views `clock`, of more `clocks`, by camera.
 
@@ -148,9 +151,10 @@ def clock_facts(clip: Clip, clocks: Clocks, given: Offsets) -> Facts:
         clip: The tracked clip.
         clocks: Clocks of these views, by the times of their files and the user's offsets.
         given: The user's offsets, by camera number.
+        heard: Those of them that the videos' sounds tell.
     """
     told = {
-        view.name: _told(view, clock, view.number in given)
+        view.name: _told(view, clock, _stated(view.number, given, heard))
         for view, clock in zip(clip.views[1:], clocks, strict=False)
     }
     if len(clip.views) == 2:
@@ -158,8 +162,15 @@ def clock_facts(clip: Clip, clocks: Clocks, given: Offsets) -> Facts:
     return {"clocks": told} if told else {}
 
 
-def _told(view: ClipView, clock: Clock, is_given: bool) -> Facts:
-    state = "given" if is_given else clock.state
+def _stated(number: ViewerNumber, given: Offsets, heard: Offsets) -> str:
+    if number in heard:
+        return "heard"
+    return "given" if number in given else ""
+
+
+def _told(view: ClipView, clock: Clock, stated: str) -> Facts:
+    """A view's clock; `stated`: given or heard, where the motion was not asked."""
+    state = stated or clock.state
     rivals_s = sorted((clock.late_s, *clock.rivals_s)) if clock.rivals_s else []
     may_be_s = [round(late_s, 2) + 0.0 for late_s in rivals_s] if state == "ambiguous" else []
     return {
@@ -196,7 +207,8 @@ def _word(view: str, told: Facts, how: str) -> str:
     if told["may_be_on_time"] and not told["applied_s"]:
         return ""
     if told["state"] != "ambiguous":
-        return f"{view} is {told['applied_s']:+.2f} s late: its times were set back by that"
+        ear = ", as the sound tells" if told["state"] == "heard" else ""
+        return f"{view} is {told['applied_s']:+.2f} s late: its times were set back by that{ear}"
     several = ", ".join(f"{late_s:+.2f}" for late_s in told["may_be_s"])
     return (
         f"how late {view} is, the motion does not show, as a gait repeats itself ({several} s): "

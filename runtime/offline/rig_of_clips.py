@@ -19,6 +19,7 @@ from common.video.decoding import Decoder
 from common.video.frame_cache import FrameCache
 from common.video.pictures import Reader
 from runtime.offline.rig_from_person import believed_clocks, sightings_of
+from runtime.sound_clocks import by_ear
 from viewer.landmarks.landmark_sources import outside_sources
 
 
@@ -54,7 +55,7 @@ def calibrated_by_clips(paths: Sequence[Path], given: Given) -> FoundByClips:
         decoders: list[Reader] = []
         for path in paths:
             settings = config_file.load(path)
-            clip = open_clip(settings)
+            clip, settings, _ = by_ear(open_clip(settings), settings)
             names = names or [view.name for view in clip.views]
             _refuse_another_rig(path, clip, names)
             sizes |= {view.source_size for view in clip.views}

@@ -1,0 +1,1 @@
+"""What a video sounds like, and how late one sound is against another."""
