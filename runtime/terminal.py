@@ -2,15 +2,22 @@
 
 import json
 import math
+import os
+import time
 from collections.abc import Callable, Iterator, Sequence
-from typing import Any, TypeVar
+from typing import Any, Final, TypeVar
 
 from rich.console import Console
-from rich.progress import Progress
+from rich.progress import Progress, TaskID
 
 Thing = TypeVar("Thing")
 Tell = Callable[[float], object]
 """Receives the share of the work that is done, in [0, 1]."""
+PROGRESS: Final = "TRITRACK_PROGRESS"
+"""Environment variable; where it is "lines", progress is printed for the program that started the
+command: a line `progress {"what": ..., "done": ..., "of": ...}` each time."""
+LEAST_S: Final = 0.2
+"""Least time between two such lines of one pass, seconds."""
 
 
 def say(console: Console, text: str) -> None:
@@ -39,8 +46,28 @@ def counted(number: int, thing: str, things: str = "") -> str:
     return f"{number} {thing if number == 1 else things or f'{thing}s'}"
 
 
+class ProgressLines(Progress):
+    """Progress as lines, for another program."""
+
+    def __init__(self, console: Console) -> None:
+        """Nothing is drawn; the lines go to the console."""
+        super().__init__(console=console, disable=True)
+        self._said_s, self._pass = -LEAST_S, ""
+
+    def update(self, task_id: TaskID, **changes: Any) -> None:
+        """Note the change, and print it where the last line is old enough or the pass is new."""
+        super().update(task_id, **changes)
+        task, now_s = self._tasks[task_id], time.monotonic()
+        if now_s - self._said_s >= LEAST_S or task.description != self._pass:
+            self._said_s, self._pass = now_s, task.description
+            said = {"what": task.description, "done": task.completed, "of": task.total}
+            _line(self.console, f"progress {json.dumps(said)}", "")
+
+
 def bar(console: Console) -> Progress:
     """Progress of long work; nothing is shown where the output is no terminal."""
+    if os.environ.get(PROGRESS) == "lines":
+        return ProgressLines(console)
     return Progress(console=console, transient=True, disable=not console.is_terminal)
 
 

@@ -189,7 +189,9 @@ def test_a_list_of_commands_shows_the_whole_first_sentence(words: list[str]) -> 
 def test_the_help_says_where_to_start_and_that_one_camera_will_do(tritrack: Commands) -> None:
     said = " ".join(tritrack("--help").out.split())
     assert "from two ordinary cameras, or one, in real time" in said
-    assert said.endswith("Start: doctor, demo, single, track, live.")
+    assert said.endswith(
+        "Start: doctor, demo, single, track, live; or tritrack alone, which opens a page."
+    )
 
 
 @pytest.mark.parametrize("words", [["board"], ["markers"], ["poles"]], ids=" ".join)
@@ -705,3 +707,21 @@ def test_a_full_disk_leaves_no_broken_file(clip: Path, tmp_path: Path) -> None:
     assert "Traceback" not in ended.stderr
     assert sorted(os.listdir(tmp_path / "out" / clip.name)) == ["journal.bin", "unfinished"]
     assert 0 < len(open_run(tmp_path / "out" / clip.name).poses["frame"]) < 69
+
+
+def test_tritrack_alone_opens_the_start_page_on_a_terminal_only(
+    tritrack: Commands, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    pytest.importorskip("websockets", reason="the page is an extra: install tritrack[page]")
+    from tritrack.starting import start
+
+    opened: list[object] = []
+    monkeypatch.setattr(start, "start", lambda *given: opened.append(given[0]))
+    monkeypatch.chdir(tmp_path)
+    for stream in ("stdin", "stdout"):
+        assert tritrack().code == 2
+        monkeypatch.setattr(getattr(sys, stream), "isatty", lambda: True)
+    assert opened == []
+    assert tritrack().code == 0
+    (given,) = opened
+    assert given.runs == Path("runs")  # type: ignore[attr-defined]

@@ -1,8 +1,12 @@
 """What a person reads while a command works."""
 
+import io
+import json
+
+import pytest
 from rich.console import Console
 
-from runtime.terminal import bar, by_pass, by_share
+from runtime.terminal import PROGRESS, bar, by_pass, by_share
 
 
 def test_a_bar_moves_with_the_frames_of_the_one_video_that_there_is() -> None:
@@ -46,3 +50,23 @@ def test_a_video_that_fails_in_its_first_pass_is_over() -> None:
         for _, begun in by_pass(progress, "ab", ("cutting out", "drawing")):
             begun("cutting out")(0.5)
     assert progress.finished
+
+
+def test_a_program_that_started_the_command_is_given_its_progress_as_lines(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The first word of each pass at once; then five lines a second at most."""
+    monkeypatch.setenv(PROGRESS, "lines")
+    said = io.StringIO()
+    with bar(Console(file=said)) as progress:
+        for _, begun in by_pass(progress, ["dance.mp4"], ("cutting out", "drawing")):
+            for name in ("cutting out", "drawing"):
+                tell = begun(name)
+                for frame in range(1, 101):
+                    tell(frame / 100)
+    lines = [line.removeprefix("progress ") for line in said.getvalue().splitlines()]
+    told = [json.loads(line) for line in lines]
+    assert [each["what"] for each in told[:2]] == ["cutting out", "drawing"]
+    assert told[0] == {"what": "cutting out", "done": 0.01, "of": 2}
+    assert told[1] == {"what": "drawing", "done": 1.01, "of": 2}
+    assert len(told) < 10

@@ -41,11 +41,12 @@ from tritrack.commands.model_commands import evaluate_app, teach, train
 from tritrack.commands.options import Out
 from tritrack.commands.report_commands import compare, report
 from tritrack.commands.rig_commands import calibrate_app
+from tritrack.commands.start_command import start
 
 app = typer.Typer(
     name="tritrack",
     help="Body tracking and posture recognition from two ordinary cameras, or one, in real time.",
-    epilog="Start: doctor, demo, single, track, live.",
+    epilog="Start: doctor, demo, single, track, live; or tritrack alone, which opens a page.",
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
@@ -135,11 +136,11 @@ def bench(
 
 
 COMMANDS: Final = (
-    *(demo, live, serve, view, integrate, recognize, animate, metrics, bridge),
-    *(track, synth, train, teach, single, report, compare, export, replay, retouch),
-    *(keys, doctor, bench),
+    *(start, single, track, live, export),
+    *(demo, replay, retouch, report, compare, synth, train, teach, doctor, bench),
+    *(serve, view, integrate, recognize, animate, metrics, bridge, keys),
 )
-"""In the order of the help."""
+"""In the order of the help: the five main uses first, the parts of a rig over hosts last."""
 for command in COMMANDS:
     app.command()(command)
 app.add_typer(calibrate_app, name="calibrate")
@@ -147,8 +148,13 @@ app.add_typer(evaluate_app, name="evaluate")
 
 
 def main() -> None:
-    """Run a command; a user's mistake is one line and exit code 2, a fault of ours 1."""
+    """Run a command; a user's mistake is one line and exit code 2, a fault of ours 1.
+
+    Without a word on a terminal it is `start`.
+    """
     heed_in_order()
+    if len(sys.argv) == 1 and sys.stdin.isatty() and sys.stdout.isatty():
+        sys.argv.append("start")
     warnings.filterwarnings("default", category=RenamedSetting)
     warnings.showwarning = tell_warning
     try:

@@ -52,7 +52,7 @@ def own_session(settings: Settings) -> Settings:
 
 def free_settings(settings: Settings) -> Settings:
     """The same settings with free ports for endpoint and page."""
-    bus, page = _free_port(), _free_port()
+    bus, page = free_port(), free_port()
     kind = "tls" if settings.bus.keys else "tcp"
     return msgspec.structs.replace(
         settings,
@@ -65,7 +65,7 @@ def with_free_endpoint(settings: Settings) -> Settings:
     """The same settings with a free port of this machine where they leave it open."""
     if settings.bus.endpoint != AUTO:
         return settings
-    endpoint = f"{'tls' if settings.bus.keys else 'tcp'}/127.0.0.1:{_free_port()}"
+    endpoint = f"{'tls' if settings.bus.keys else 'tcp'}/127.0.0.1:{free_port()}"
     bus = msgspec.structs.replace(settings.bus, endpoint=endpoint)
     return msgspec.structs.replace(settings, bus=bus)
 
@@ -149,7 +149,8 @@ def _trouble(host: str, port: int) -> str:
     return ""
 
 
-def _free_port() -> int:
+def free_port() -> int:
+    """A port of this machine that no program uses now."""
     with socket.socket() as door:
         door.bind(("127.0.0.1", 0))
         return int(door.getsockname()[1])

@@ -1,0 +1,1 @@
+"""The start page for browsers: its server, its messages, its site."""

@@ -1,0 +1,317 @@
+"""JSON messages between the start page's process and a browser, and the chunks of files."""
+
+import struct
+from typing import Any, Final, Literal
+
+import msgspec
+
+CHUNK_BYTES: Final = 1 << 20
+"""Largest piece of a file in one message, bytes."""
+CHUNK_HEAD: Final = struct.Struct("<BIQ")
+"""Head of a piece: 0, which no JSON begins with, the file's number, and where the piece begins."""
+MOST_SAID_BYTES: Final = CHUNK_BYTES + CHUNK_HEAD.size
+"""Upper bound of a browser's message, bytes."""
+MOST_TEXT_BYTES: Final = 10_000
+"""Upper bound of one that is no piece of a file, bytes."""
+
+Task = Literal["single", "track", "person", "board", "import"]
+"""A job for the dropped files."""
+Format = Literal["bvh", "gltf", "usd", "trc", "mot", "c3d", "csv"]
+State = Literal["waiting", "running", "done", "failed", "cancelled"]
+
+
+class WishError(ValueError):
+    """A message that is none of the page's; the text says why."""
+
+
+class Wish(
+    msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag_field="type", tag=str.lower
+):
+    """What a browser asks for."""
+
+
+class Begin(Wish, frozen=True):
+    """A file will be sent, piece by piece."""
+
+    file: int
+    """A number of the browser's choice."""
+    name: str
+    bytes: int
+
+
+class Drop(Wish, frozen=True):
+    """A file, or all of them, shall be forgotten."""
+
+    file: int | None = None
+
+
+class Raise(Wish, frozen=True):
+    """A file shall stand one place earlier: cameras are numbered in this order."""
+
+    file: int
+
+
+class Work(Wish, frozen=True):
+    """The dropped files shall be worked on."""
+
+    task: Task
+    name: str = ""
+    """Name of the run or calibration; "": the files'."""
+    calibration: str = ""
+    """One of the list; "": none, the person tells where the cameras are."""
+    offset_s: float | None = None
+    """Delay of camera 2, seconds; None: estimated."""
+    stature_m: float = 1.75
+    square_mm: float | None = None
+    """Side of a board's square, as measured; None: as printed."""
+
+
+class Board(Wish, frozen=True):
+    """The calibration board shall be written as a file to print."""
+
+    paper: Literal["a4", "a3"] = "a3"
+
+
+class Cancel(Wish, frozen=True):
+    """A job shall end."""
+
+    job: int
+
+
+class Open(Wish, frozen=True):
+    """A page of a run shall be opened."""
+
+    run: str
+    page: Literal["replay", "retouch"]
+
+
+class Export(Wish, frozen=True):
+    """A run shall be written as a file for other programs."""
+
+    run: str
+    to: Format
+
+
+class Compare(Wish, frozen=True):
+    """Two runs shall be compared."""
+
+    run: str
+    other: str
+
+
+class Delete(Wish, frozen=True):
+    """A run or a calibration shall be deleted; the browser has asked its user."""
+
+    what: Literal["run", "calibration"]
+    name: str
+
+
+class Look(Wish, frozen=True):
+    """The cameras of this machine shall be opened, or closed."""
+
+    on: bool
+
+
+class Live(Wish, frozen=True):
+    """Track live, by these cameras."""
+
+    cameras: tuple[str, ...]
+    calibration: str = ""
+    pictures: bool = False
+    """The live page may show small pictures."""
+
+
+AnyWish = (
+    Begin | Drop | Raise | Work | Board | Cancel | Open | Export | Compare | Delete | Look | Live
+)
+
+
+class Chunk(msgspec.Struct, frozen=True):
+    """A piece of a file."""
+
+    file: int
+    start: int
+    """Where it begins, bytes."""
+    content: memoryview
+
+
+def heard(said: bytes) -> AnyWish | Chunk:
+    """A browser's message.
+
+    Raises:
+        WishError: When it is none of the page's.
+    """
+    if said[:1] == b"\0" and len(said) >= CHUNK_HEAD.size:
+        _, file, start = CHUNK_HEAD.unpack_from(said)
+        return Chunk(file, start, memoryview(said)[CHUNK_HEAD.size :])
+    if len(said) > MOST_TEXT_BYTES:
+        raise WishError(f"a message of {len(said)} bytes: {MOST_TEXT_BYTES} at most")
+    try:
+        wish: AnyWish = msgspec.json.decode(said, type=AnyWish)
+    except (msgspec.DecodeError, RecursionError) as error:
+        raise WishError(f"not a message of this page: {error}") from error
+    return wish
+
+
+class Section(msgspec.Struct, frozen=True, tag_field="kind", tag=str.lower):
+    """A part of the page, as it is now."""
+
+
+class Hello(Section, frozen=True):
+    """What never changes while the page is open."""
+
+    runs: str
+    """The folder of the runs."""
+    formats: tuple[str, ...]
+    compares: bool
+    """Whether runs can be compared."""
+    replays: bool
+    """Whether a run of several cameras is recorded, for a replay."""
+    most_files: int
+    most_bytes: int
+    """Of one file."""
+
+
+class ShownFile(msgspec.Struct, frozen=True):
+    """A dropped file."""
+
+    file: int
+    name: str
+    bytes: int
+    got: int
+    """Bytes that have come."""
+    facts: str = ""
+    """Length, rate, size and shape of a video; "" while it is not known."""
+    fault: str = ""
+    kind: Literal["video", "calibration", ""] = ""
+
+
+class Tray(Section, frozen=True):
+    """The dropped files, in the order of the cameras."""
+
+    files: list[ShownFile]
+    tasks: tuple[Task, ...]
+    """What can be done with them now."""
+    says: str
+    """What they are together, or what is wrong with them."""
+    name: str
+    """Proposed name of the run."""
+
+
+class Got(msgspec.Struct, frozen=True, tag_field="kind", tag="got"):
+    """So much of a file has come: the next piece begins there."""
+
+    file: int
+    bytes: int
+
+
+class ShownJob(msgspec.Struct, frozen=True):
+    """A command that the page runs."""
+
+    job: int
+    title: str
+    command: str
+    """As a user would type it."""
+    state: State
+    share: float
+    """Done, in [0, 1]."""
+    doing: str
+    """What it is doing, and how far it is."""
+    lines: tuple[str, ...]
+    """The last lines that it printed."""
+    told: str
+    """Its result, or its error with the cure."""
+    run: str = ""
+    """The run that it writes."""
+    address: str = ""
+    """Its own page."""
+
+
+class Jobs(Section, frozen=True):
+    """Newest last."""
+
+    jobs: list[ShownJob]
+
+
+class ShownRun(msgspec.Struct, frozen=True):
+    """A run folder."""
+
+    name: str
+    picture: str
+    """Address of its picture; "": none yet."""
+    when: str
+    what: str
+    frames: int
+    believed: float | None
+    """Share of the frames with a person in which the body is believed."""
+    notes: tuple[str, ...]
+    """Its warnings and advice."""
+    files: tuple[tuple[str, str, int], ...]
+    """Files to download: address, name, bytes."""
+    replay: str
+    """"": it can be replayed; else why not."""
+    retouch: str
+    """"": it can be retouched; else why not."""
+
+
+class Runs(Section, frozen=True):
+    """Newest first."""
+
+    runs: list[ShownRun]
+    left_out: int
+    """Number of older ones that are not shown."""
+
+
+class ShownCamera(msgspec.Struct, frozen=True):
+    """A camera of this machine, or a file that plays as one."""
+
+    camera: str
+    """Its id in wishes and addresses."""
+    name: str
+    where: str
+    """Bus path, which tells identical ones apart."""
+    facts: str
+    """Resolution and rate, once it is open."""
+    fault: str
+    picture: str
+    """Address of its newest picture; "": none."""
+
+
+class Cameras(Section, frozen=True):
+    """The cameras of this machine."""
+
+    on: bool
+    cameras: list[ShownCamera]
+    says: str
+    """What to do where there are none."""
+
+
+class ShownCalibration(msgspec.Struct, frozen=True):
+    """A kept calibration."""
+
+    name: str
+    when: str
+    cameras: int
+    told: str
+    """What its command printed."""
+    address: str
+
+
+class Calibrations(Section, frozen=True):
+    """Newest first."""
+
+    calibrations: list[ShownCalibration]
+    board: str
+    """Address of the board to print; "": not made yet."""
+
+
+class Told(msgspec.Struct, frozen=True, tag_field="kind", tag="told"):
+    """The outcome of a wish."""
+
+    text: str
+    well: bool
+
+
+def encoded(message: Any) -> bytes:
+    """A message for browsers."""
+    return msgspec.json.encode(message)

@@ -1,0 +1,65 @@
+"""What dropped files are, one by one and together."""
+
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+from common.video.decoding import Decoder
+from common.video.pictures import VideoInfo
+from tritrack.starting.tray import Facts, facts_of, shown_tray, together, words_of
+from tritrack.starting.uploads import Upload
+
+WALK = VideoInfo(width=640, height=480, fps=15.0, frames=150)
+
+
+def whole(number: int, name: str) -> Upload:
+    return Upload(number, Path(name), 100, 100)
+
+
+def test_a_videos_facts_are_read_from_it(tmp_path: Path) -> None:
+    path = tmp_path / "cam1.avi"
+    video = cv2.VideoWriter(str(path), cv2.VideoWriter.fourcc(*"MJPG"), 20.0, (120, 160))
+    for grey in range(30):
+        video.write(np.full((160, 120, 3), 8 * grey, np.uint8))
+    video.release()
+    with Decoder() as decoder:
+        found = facts_of(Upload(1, path, 1, 1), decoder)
+        assert found.info is not None
+        assert words_of(found.info) == "1.5 s, 30 frames at 20 a second, 120x160, upright"
+        path.write_bytes(b"no video")
+        said = facts_of(Upload(1, path, 1, 1), decoder).fault
+    assert said.startswith("cam1.avi")
+    assert str(tmp_path) not in said
+
+
+@pytest.mark.parametrize(
+    ("other", "says"),
+    [
+        (VideoInfo(width=640, height=480, fps=25.0, frames=250), "Their rates differ"),
+        (VideoInfo(width=640, height=480, fps=15.0, frames=165), "Their lengths differ"),
+    ],
+)
+def test_what_differs_between_two_is_said(other: VideoInfo, says: str) -> None:
+    paths = [Path("a.avi"), Path("b.avi")]
+    assert says in together(paths, [WALK, other])
+    assert says not in together(paths, [WALK, WALK])
+    assert "a.avi is camera 1" in together(paths, [WALK, other])
+
+
+def test_nothing_can_be_done_before_all_came_and_could_be_read() -> None:
+    files = [whole(1, "a.avi"), whole(2, "b.avi")]
+    assert shown_tray(files, {1: Facts(WALK), 2: Facts(WALK)}).tasks == ("track", "person", "board")
+    assert shown_tray(files, {1: Facts(WALK)}).tasks == ()
+    spoilt = shown_tray(files, {1: Facts(WALK), 2: Facts(fault="b.avi is empty")})
+    assert (spoilt.tasks, spoilt.files[1].fault) == ((), "b.avi is empty")
+    assert shown_tray([], {}).tasks == ()
+
+
+def test_a_calibration_is_taken_over_by_itself() -> None:
+    one = whole(1, "Calib.toml")
+    assert shown_tray([one], {1: Facts()}).tasks == ("import",)
+    both = shown_tray([one, whole(2, "a.avi")], {1: Facts(), 2: Facts(WALK)})
+    assert both.tasks == ()
+    assert "take the other files away" in both.says

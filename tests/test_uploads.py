@@ -1,0 +1,124 @@
+"""Dropped files piece by piece: what comes whole, what is refused, what is left behind."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+from animator.start.start_messages import Begin, Chunk
+from common.bus.messages import MOST_VIEWS
+from tritrack.starting.uploads import MOST_BYTES, UploadRefused, Uploads, safe_name
+
+
+def piece(file: int, start: int, content: bytes) -> Chunk:
+    return Chunk(file, start, memoryview(content))
+
+
+@pytest.fixture
+def uploads(tmp_path: Path) -> Uploads:
+    return Uploads(tmp_path / "uploads", 1000)
+
+
+def test_a_file_comes_whole_though_a_piece_comes_twice(uploads: Uploads) -> None:
+    content = os.urandom(700)
+    found = uploads.begin(Begin(7, "walk.mp4", 700))
+    for start, end in ((0, 300), (0, 300), (300, 600), (200, 500), (600, 700)):
+        uploads.take(piece(7, start, content[start:end]))
+    assert found.is_whole
+    assert found.path.read_bytes() == content
+
+
+def test_a_file_never_grows_beyond_what_was_said(uploads: Uploads) -> None:
+    found = uploads.begin(Begin(7, "walk.mp4", 10))
+    uploads.take(piece(7, 0, b"x" * 500))
+    uploads.take(piece(7, 10, b"x" * 500))
+    assert found.path.stat().st_size == 10
+
+
+def test_what_belongs_to_no_file_changes_nothing(uploads: Uploads) -> None:
+    assert uploads.take(piece(1, 0, b"x")) is None
+
+
+@pytest.mark.parametrize(
+    ("name", "kept"),
+    [
+        ("../../etc/passwd", "passwd"),
+        ("C:\\films\\walk 1.MP4", "walk_1.MP4"),
+        (".bashrc", "bashrc"),
+        ("-rf.avi", "rf.avi"),
+        ("a\0b\n.avi", "a_b_.avi"),
+        ("größe.mp4", "gr_e.mp4"),
+        ("..", "video"),
+        ("x" * 300 + ".mkv", "x" * 76 + ".mkv"),
+    ],
+)
+def test_a_name_leads_nowhere_else(uploads: Uploads, tmp_path: Path, name: str, kept: str) -> None:
+    assert safe_name(name) == kept
+    found = uploads.begin(Begin(1, name, 10))
+    assert found.path == tmp_path / "uploads/1" / kept
+
+
+@pytest.mark.parametrize(
+    ("wish", "says"),
+    [
+        (Begin(1, "walk.mp4", 1001), "at most"),
+        (Begin(1, "walk.mp4", 0), "is empty"),
+        (Begin(1, "walk.mp4", -5), "is empty"),
+        (Begin(-1, "walk.mp4", 10), "number"),
+        (Begin(1 << 40, "walk.mp4", 10), "number"),
+    ],
+)
+def test_what_is_too_much_or_nothing_is_refused(uploads: Uploads, wish: Begin, says: str) -> None:
+    with pytest.raises(UploadRefused, match=says):
+        uploads.begin(wish)
+    assert uploads.files == []
+
+
+def test_a_disk_keeps_its_last_space(tmp_path: Path) -> None:
+    uploads = Uploads(tmp_path / "uploads", 1 << 62)
+    with pytest.raises(UploadRefused, match="no space"):
+        uploads.begin(Begin(1, "walk.mp4", 1 << 61))
+    with pytest.raises(UploadRefused, match=r"17\.2 GB, the page takes 8\.6 at most"):
+        Uploads(tmp_path / "uploads", MOST_BYTES).begin(Begin(1, "walk.mp4", 2 * MOST_BYTES))
+
+
+def test_a_calibration_is_small(tmp_path: Path) -> None:
+    uploads = Uploads(tmp_path / "uploads")
+    with pytest.raises(UploadRefused, match="at most"):
+        uploads.begin(Begin(1, "Calib.toml", 1 << 26))
+    assert uploads.begin(Begin(1, "Calib.toml", 100)).is_calibration
+
+
+def test_there_are_no_more_files_than_cameras(uploads: Uploads) -> None:
+    for number in range(MOST_VIEWS):
+        uploads.begin(Begin(number, "cam.avi", 10))
+    with pytest.raises(UploadRefused, match="take one away"):
+        uploads.begin(Begin(99, "cam.avi", 10))
+    uploads.drop(3)
+    assert uploads.begin(Begin(99, "cam.avi", 10)) in uploads.files
+    with pytest.raises(UploadRefused, match="number"):
+        Uploads(uploads.files[0].path.parents[2] / "other", 1000).begin(Begin(1 << 33, "a", 1))
+
+
+def test_the_order_is_that_of_the_cameras(uploads: Uploads) -> None:
+    for number in (5, 6, 7):
+        uploads.begin(Begin(number, "cam.avi", 10))
+    uploads.earlier(7)
+    uploads.earlier(5)
+    assert [one.number for one in uploads.files] == [5, 7, 6]
+
+
+def test_nothing_is_left_of_what_was_only_dropped(uploads: Uploads, tmp_path: Path) -> None:
+    uploads.begin(Begin(1, "walk.mp4", 10))
+    (tmp_path / "uploads/old").mkdir()
+    again = Uploads(tmp_path / "uploads")
+    assert [*(tmp_path / "uploads").iterdir()] == []
+    again.begin(Begin(1, "walk.mp4", 10))
+    again.close()
+    assert not (tmp_path / "uploads").exists()
+
+
+def test_a_folder_that_cannot_be_written_is_named(tmp_path: Path) -> None:
+    (tmp_path / "runs").write_text("a file")
+    with pytest.raises(UploadRefused, match="name another --runs"):
+        Uploads(tmp_path / "runs/.uploads")

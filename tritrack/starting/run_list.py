@@ -1,0 +1,199 @@
+"""The runs of a folder: what each was, how well it went, its picture and its files."""
+
+import json
+import time
+from collections.abc import Mapping
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any, Final, NamedTuple
+from urllib.parse import quote
+
+import cv2
+import numpy as np
+
+from animator.overlay import draw_stick
+from animator.start.start_messages import Runs, ShownRun
+from common.body.body import Vector
+from common.config.picture_size import size_of, working_size
+from common.npz_file import Facts
+from common.video.decoding import Decoder
+from common.video.pictures import DecoderDied, Image, Size, Undecodable, Wanted
+from runtime.store.past_run import is_run, open_run
+from runtime.store.run_exports import EXPORTS
+
+MOST_SHOWN: Final = 100
+MOST_FILE_BYTES: Final = 1 << 29
+"""A larger file is not offered: the page reads a file whole."""
+PICTURE: Final = (320, 240)
+"""Bound of a run's picture, pixels."""
+OFFERED: Final = (
+    *("overlay.mp4", "overlay.avi", "report.html", "keyframes.bvh", *EXPORTS),
+    *("poses.npz", "summary.json", "posture.json", "recording.mcap"),
+)
+"""Files of a run that may be downloaded; exports of one of several people besides."""
+RECORDING: Final = "recording.mcap"
+WORDS: Final = {"track": "cameras", "single": "one camera", "live": "live", "replay": "replayed"}
+
+
+class RunFiles(NamedTuple):
+    """A run and what is read of it."""
+
+    folder: Path
+    changed_s: float
+    """When its summary was written."""
+    summary: Facts
+
+
+def run_folder(runs: Path, name: str) -> Path | None:
+    """A run by its name; None where there is none, or the name would lead elsewhere."""
+    folder = runs / name
+    if not name or name.startswith(".") or name != folder.name or folder.is_symlink():
+        return None
+    return folder if folder.is_dir() and is_run(folder) else None
+
+
+def run_file(runs: Path, name: str, file: str) -> Path | None:
+    """A file of a run that may be downloaded; None where there is none."""
+    folder = run_folder(runs, name)
+    if folder is None or file not in files_of(folder):
+        return None
+    return folder / file
+
+
+def files_of(folder: Path) -> list[str]:
+    """The names of the files of a run that may be downloaded."""
+    found = []
+    for path in sorted(folder.iterdir()):
+        stem, _, person = path.stem.partition("_person")
+        whole = f"{stem}{path.suffix}" if person.isdecimal() else path.name
+        small = path.is_file() and not path.is_symlink()
+        if whole in OFFERED and small and path.stat().st_size <= MOST_FILE_BYTES:
+            found.append(path.name)
+    return sorted(found, key=lambda name: (name not in OFFERED[:3], name))
+
+
+def found_runs(runs: Path) -> list[RunFiles]:
+    """The runs of a folder, newest first; one that is being written is left out."""
+    found = []
+    for path in runs.iterdir() if runs.is_dir() else ():
+        summary = path / "summary.json"
+        if run_folder(runs, path.name) is None or not summary.is_file():
+            continue
+        try:
+            told = json.loads(summary.read_text())
+        except (OSError, ValueError):
+            continue
+        if isinstance(told, Mapping):
+            found.append(RunFiles(path, summary.stat().st_mtime, dict(told)))
+    return sorted(found, key=lambda run: -run.changed_s)
+
+
+def shown_runs(found: list[RunFiles], pictures: Mapping[str, float]) -> Runs:
+    """In the form for browsers.
+
+    Args:
+        found: Newest first.
+        pictures: Of which runs there are pictures, and of which change.
+    """
+    shown = [shown_run(run, pictures.get(run.folder.name, 0.0)) for run in found[:MOST_SHOWN]]
+    return Runs(shown, len(found) - len(shown))
+
+
+def shown_run(run: RunFiles, pictured: float = 0.0) -> ShownRun:
+    """One of them."""
+    name, told = run.folder.name, run.summary
+    at = f"run/{quote(name)}"
+    files = files_of(run.folder)
+    believed = told.get("believed")
+    return ShownRun(
+        name=name,
+        picture=f"{at}/picture.jpg?{pictured:.0f}" if pictured else "",
+        when=time.strftime("%Y-%m-%d %H:%M", time.localtime(run.changed_s)),
+        what=what_of(told),
+        frames=int(told.get("frames") or 0),
+        believed=float(believed) if isinstance(believed, int | float) else None,
+        notes=notes_of(told),
+        files=tuple((f"{at}/{quote(f)}", f, (run.folder / f).stat().st_size) for f in files),
+        replay=_why_no_replay(files),
+        retouch=_why_no_retouch(told),
+    )
+
+
+def what_of(summary: Mapping[str, Any]) -> str:
+    """What a run was: how it was made, of which videos."""
+    told = summary.get("run_of")
+    if not isinstance(told, Mapping):
+        return "live"
+    films = [Path(str(film)).name for film in told.get("footage") or ()]
+    word = WORDS.get(str(told.get("command")), str(told.get("command")))
+    if word == "cameras":
+        word = f"{len(films)} cameras" if len(films) > 1 else "one camera"
+    return f"{word}: {', '.join(films)}" if films else word
+
+
+def notes_of(summary: Mapping[str, Any]) -> tuple[str, ...]:
+    """Warnings of a run, the advice on its calibration, and how late camera 2 was."""
+    notes = [str(each) for each in summary.get("warnings") or ()]
+    trust = summary.get("trust")
+    if isinstance(trust, Mapping) and trust.get("advice"):
+        notes.append(str(trust["advice"]))
+    return tuple(dict.fromkeys(notes))
+
+
+def _why_no_replay(files: list[str]) -> str:
+    if RECORDING in files:
+        return ""
+    return "not recorded: add --record to the command"
+
+
+def _why_no_retouch(summary: Mapping[str, Any]) -> str:
+    if find_spec("viser") is None or find_spec("tomlkit") is None:
+        return "needs: pip install 'tritrack[page]'"
+    told = summary.get("run_of")
+    films = told.get("footage") or () if isinstance(told, Mapping) else ()
+    if not films or not Path(str(films[0])).is_file():
+        return "its video is not there"
+    return ""
+
+
+def picture_of(run: RunFiles, decoder: Decoder) -> bytes | None:
+    """A JPEG of a run: the body in the middle of its frames, over the video's frame if that is
+    there; None where there is no pose.
+
+    Raises:
+        PastRunError: When it cannot be read.
+    """
+    poses = open_run(run.folder).poses
+    posed = np.isfinite(poses["joints_px"][:, 0]).all(axis=(1, 2))
+    rows = np.flatnonzero(posed & (poses["confidence"].mean(axis=1) > 0))
+    rows = rows if len(rows) else np.flatnonzero(posed)
+    if not len(rows):
+        return None
+    row = int(rows[len(rows) // 2])
+    joints_px, sure = poses["joints_px"][row, 0], poses["confidence"][row]
+    bound = size_of(str(run.summary.get("settings", {}).get("size", "320x240")))
+    image, width_px = _frame_or_paper(run, decoder, int(poses["frame"][row]), joints_px, bound)
+    draw_stick(image, joints_px * (image.shape[1] / width_px), sure)
+    return bytes(cv2.imencode(".jpg", image, [cv2.IMWRITE_JPEG_QUALITY, 80])[1])
+
+
+def _frame_or_paper(
+    run: RunFiles, decoder: Decoder, frame: int, joints_px: Vector, bound: Size
+) -> tuple[Image, int]:
+    """The frame, else paper on which the body fits; and the width of the working picture."""
+    told = run.summary.get("run_of")
+    films = told.get("footage") or [""] if isinstance(told, Mapping) else [""]
+    if Path(str(films[0])).is_file():
+        try:
+            info = decoder.probe(str(films[0]))
+            size = (info.width, info.height)
+            wanted = Wanted(start=max(0, frame))
+            shown = decoder.frames(str(films[0]), working_size(size, PICTURE), wanted)
+            image = next(shown).picture.copy()
+            shown.close()
+            return image, working_size(size, bound)[0]
+        except (Undecodable, DecoderDied, StopIteration):
+            pass
+    low = joints_px.max(axis=0) + 8
+    width, height = max(int(low[0]), bound[0]), max(int(low[1]), bound[1])
+    return np.full((height, width, 3), 245, np.uint8), width

@@ -1,0 +1,106 @@
+"""What the dropped files are, one by one and together, in words."""
+
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
+from pathlib import Path
+from typing import Final, NamedTuple
+
+from animator.start.start_messages import ShownFile, Tray
+from common.bus.messages import MOST_VIEWS
+from common.video.clip_sources import ClipError
+from common.video.clips import probed
+from common.video.decoding import Decoder
+from common.video.pictures import DecoderDied, VideoInfo
+from tritrack.starting.job_plan import name_of_files, tasks_of
+from tritrack.starting.uploads import Upload
+
+SAME_RATE: Final = 0.01
+"""Largest relative difference of rates that count as one."""
+SAME_S: Final = 0.5
+"""Largest difference of lengths that is not told, seconds."""
+
+
+class Facts(NamedTuple):
+    """What was found out about a whole file."""
+
+    info: VideoInfo | None = None
+    fault: str = ""
+
+
+def facts_of(upload: Upload, decoder: Decoder) -> Facts:
+    """The facts of a video; those of a calibration are its command's to find."""
+    if upload.is_calibration:
+        return Facts()
+    try:
+        return Facts(probed(str(upload.path), decoder))
+    except (ClipError, DecoderDied) as error:
+        return Facts(fault=str(error).replace(str(upload.path), upload.path.name))
+
+
+def length_s(info: VideoInfo) -> float:
+    """Length of a video, seconds; 0 where it does not tell."""
+    return info.frames / info.fps if info.fps > 0 else 0.0
+
+
+def words_of(info: VideoInfo) -> str:
+    """Length, rate, size and shape."""
+    shape = "upright" if info.height > info.width else "wide"
+    rate = f"{info.frames} frames at {info.fps:.4g} a second" if info.fps else "no frame rate"
+    return f"{length_s(info):.1f} s, {rate}, {info.width}x{info.height}, {shape}"
+
+
+def together(paths: Sequence[Path], infos: Sequence[VideoInfo]) -> str:
+    """What several videos are together, and what differs between them."""
+    if not infos:
+        return ""
+    if len(infos) == 1:
+        return "One video: a person is followed with one camera."
+    if len(infos) > MOST_VIEWS:
+        return f"{len(infos)} videos: {MOST_VIEWS} at most make a clip."
+    said = [
+        f"{len(infos)} videos of one scene, by {len(infos)} cameras: {paths[0].name} is camera 1, "
+        "which should see the person's front."
+    ]
+    pairs = [*pairwise(infos)]
+    if any(abs(one.fps - other.fps) > SAME_RATE * max(one.fps, other.fps) for one, other in pairs):
+        said.append("Their rates differ: they are brought together by time.")
+    if any(abs(length_s(one) - length_s(other)) > SAME_S for one, other in pairs):
+        said.append("Their lengths differ: they were started or ended at different times.")
+    said.append("How late one is after the other is found from the motion, and told with the run.")
+    return " ".join(said)
+
+
+def shown_tray(files: Sequence[Upload], facts: Mapping[int, Facts]) -> Tray:
+    """In the form for browsers.
+
+    Args:
+        files: In the order of the cameras.
+        facts: Of those that came whole, by their numbers.
+    """
+    ready = [one for one in files if one.number in facts and not facts[one.number].fault]
+    infos = [info for one in ready if (info := facts[one.number].info) is not None]
+    calibrations = sum(one.is_calibration for one in ready)
+    whole = len(ready) == len(files)
+    said = together([one.path for one in ready if not one.is_calibration], infos)
+    if calibrations:
+        said = "A calibration of another program."
+        said += "" if len(files) == 1 else " Take it over by itself: take the other files away."
+    return Tray(
+        files=[_shown(one, facts.get(one.number)) for one in files],
+        tasks=tasks_of(len(infos), calibrations) if whole else (),
+        says=said if whole else "",
+        name=name_of_files([one.path.stem for one in files]) if files else "",
+    )
+
+
+def _shown(upload: Upload, facts: Facts | None) -> ShownFile:
+    info = None if facts is None else facts.info
+    return ShownFile(
+        file=upload.number,
+        name=upload.path.name,
+        bytes=upload.bytes,
+        got=upload.got,
+        facts="" if info is None else words_of(info),
+        fault="" if facts is None else facts.fault,
+        kind="calibration" if upload.is_calibration else "video",
+    )

@@ -1,0 +1,141 @@
+"""Dropped files: received piece by piece into a temporary folder, bounded in size and number."""
+
+import re
+import shutil
+from dataclasses import dataclass
+from pathlib import Path
+from typing import IO, Final
+
+from animator.start.start_messages import Begin, Chunk
+from common.atomic_file import unwritten
+from common.bus.messages import MOST_VIEWS
+
+FOLDER: Final = ".uploads"
+MOST_BYTES: Final = 1 << 33
+"""Upper bound of a video, bytes: an hour of one camera is a tenth of it."""
+MOST_CALIBRATION_BYTES: Final = 1 << 24
+CALIBRATIONS: Final = (".toml", ".yml", ".yaml", ".xml", ".txt")
+"""Suffixes of calibration files of other programs."""
+SPARE_BYTES: Final = 1 << 30
+"""Free space that a file must leave on the disk, bytes."""
+MOST_LETTERS: Final = 80
+"""Of a file's name."""
+
+
+class UploadRefused(ValueError):
+    """A file that is not taken; the text says why and what to do."""
+
+
+@dataclass
+class Upload:
+    """A file that comes or has come."""
+
+    number: int
+    path: Path
+    bytes: int
+    got: int = 0
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether all of it has come."""
+        return self.got == self.bytes
+
+    @property
+    def is_calibration(self) -> bool:
+        """Whether it is a calibration of another program, by its name."""
+        return self.path.suffix.lower() in CALIBRATIONS
+
+
+def safe_name(name: str) -> str:
+    """A file's name without folders, hidden names and signs that a shell or a system minds."""
+    last = re.split(r"[\\/]", name)[-1]
+    plain = re.sub(r"[^A-Za-z0-9._-]+", "_", last).lstrip("._-")
+    stem, dot, suffix = plain.rpartition(".")
+    kept = f"{stem[: MOST_LETTERS - len(suffix) - 1]}.{suffix[:10]}" if dot and stem else plain
+    return kept[:MOST_LETTERS] or "video"
+
+
+class Uploads:
+    """The files of the tray, in the order of the cameras.
+
+    Args:
+        folder: Made anew; all in it is removed.
+        most_bytes: Upper bound of a file.
+    """
+
+    def __init__(self, folder: Path, most_bytes: int = MOST_BYTES) -> None:
+        self.files: list[Upload] = []
+        self._folder, self._most_bytes = folder, most_bytes
+        self._open: dict[int, IO[bytes]] = {}
+        shutil.rmtree(folder, ignore_errors=True)
+        try:
+            folder.mkdir(parents=True)
+        except OSError as error:
+            raise UploadRefused(unwritten(folder, error, "name another --runs")) from error
+
+    def begin(self, wish: Begin) -> Upload:
+        """Begin to receive a file.
+
+        Raises:
+            UploadRefused: When it is too large, empty, one too many, or there is no space.
+        """
+        name = safe_name(wish.name)
+        found = Upload(wish.file, self._folder / str(wish.file) / name, wish.bytes)
+        most = MOST_CALIBRATION_BYTES if found.is_calibration else self._most_bytes
+        if not 0 <= wish.file < 1 << 32 or any(one.number == wish.file for one in self.files):
+            raise UploadRefused(f"{name}: a file with this number is there already")
+        if len(self.files) >= MOST_VIEWS:
+            raise UploadRefused(f"{name}: {MOST_VIEWS} files are there already: take one away")
+        if wish.bytes <= 0:
+            raise UploadRefused(f"{name} is empty: copy or record it again")
+        if wish.bytes > most:
+            raise UploadRefused(
+                f"{name} has {wish.bytes / 1e9:.1f} GB, the page takes {most / 1e9:.1f} at most: "
+                "name it in the command instead"
+            )
+        if wish.bytes + SPARE_BYTES > shutil.disk_usage(self._folder).free:
+            raise UploadRefused(f"{name}: there is no space for it on the disk: free some")
+        found.path.parent.mkdir()
+        self._open[wish.file] = found.path.open("xb")
+        self.files.append(found)
+        return found
+
+    def take(self, chunk: Chunk) -> Upload | None:
+        """The file after one more piece of it; a piece that was there already changes nothing.
+
+        Raises:
+            UploadRefused: When it cannot be written.
+        """
+        found = next((one for one in self.files if one.number == chunk.file), None)
+        if found is None or chunk.file not in self._open or chunk.start != found.got:
+            return found
+        fits = chunk.content[: found.bytes - found.got]
+        try:
+            self._open[chunk.file].write(fits)
+            found.got += len(fits)
+            if found.is_whole:
+                self._open.pop(chunk.file).close()
+        except OSError as error:
+            self.drop(chunk.file)
+            raise UploadRefused(unwritten(found.path, error, "take the file away")) from error
+        return found
+
+    def earlier(self, number: int) -> None:
+        """Move a file one place to the front."""
+        at = next((n for n, one in enumerate(self.files) if one.number == number), 0)
+        if at:
+            self.files[at - 1 : at + 1] = reversed(self.files[at - 1 : at + 1])
+
+    def drop(self, number: int | None) -> None:
+        """Remove a file; None: all."""
+        for one in [one for one in self.files if number in (None, one.number)]:
+            file = self._open.pop(one.number, None)
+            if file is not None:
+                file.close()
+            shutil.rmtree(one.path.parent, ignore_errors=True)
+            self.files.remove(one)
+
+    def close(self) -> None:
+        """Remove all of it."""
+        self.drop(None)
+        shutil.rmtree(self._folder, ignore_errors=True)
