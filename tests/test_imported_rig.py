@@ -78,6 +78,12 @@ def test_qualisys_cameras_stand_where_their_laboratory_has_them(data_dir: Path) 
     [
         ("a.toml", "[cam1]\nmatrix = [[1]]\n", r"\[cam1\] has no rotation"),
         ("a.toml", "x = ", "no calibration in TOML"),
+        (
+            "a.toml",
+            "[cam1]\nmatrix = [[1]]\nrotation = [0, 0, 0]\ntranslation = [0, 0, 0]\n"
+            "size = [640, nan]\n",
+            r"size of \[cam1\] is no size: \[640, nan\]",
+        ),
         ("a.toml", "", r"a\.toml holds no camera in a form that is known: TOML of"),
         ("a.txt", "<a>", "no calibration of Qualisys"),
         ("a.csv", "", "known are .toml"),

@@ -1,5 +1,7 @@
 """The start page in a real browser: dropped videos, runs, cameras, calibrations."""
 
+import json
+import os
 import threading
 from collections.abc import Iterator
 from pathlib import Path
@@ -16,10 +18,14 @@ from test_page_server import free_port
 
 from animator.page.door import Entrance, invitation_of
 from animator.start.start_page import StartPage
+from common.config import config_file
+from common.rig.rig_file import load_rig
 from tritrack.starting.start import LOOK_S
 from tritrack.starting.start_desk import Given, StartDesk
 
 TOKEN = "a-long-word"
+AXE = Path(os.environ.get("AXE", "node_modules/axe-core/axe.min.js"))
+"""axe-core of npm, which is no part of this project."""
 WORK_S = 280.0
 """For one job: a busy machine compiles nothing, but tracks slowly."""
 
@@ -141,3 +147,137 @@ def test_a_dropped_video_becomes_a_run_that_is_exported_and_deleted(
         for address in looking.tab.asked
         if address != "about:blank"
     )
+
+
+def test_no_serious_fault_of_access_and_nothing_beyond_the_window(
+    started: Started, clip: Path
+) -> None:
+    """By axe-core, with the files in the tray, cameras open, a job that failed and a run."""
+    if CHROMIUM is None:
+        pytest.skip("no Chromium here: the page is not looked at")
+    if not AXE.is_file():
+        pytest.skip("no axe-core here: npm install axe-core, or name its axe.min.js by AXE")
+    written_run(started.runs / "walk")
+    with open_tab(CHROMIUM, SOFT) as tab:
+        for size in SIZES.values():
+            looking = Looking(tab, started.address, size)
+            assert looking.until("document.body?.dataset.heard")
+            fill_page(looking, clip)
+            assert looking.ask("document.documentElement.scrollWidth <= innerWidth"), size
+            tab.call("Runtime.evaluate", expression=AXE.read_text())
+            found = tab.call(
+                "Runtime.evaluate",
+                expression="axe.run().then(found => JSON.stringify(found.violations))",
+                awaitPromise=True,
+            )["result"]["value"]
+            faults = [(each["id"], each["nodes"][0]["html"]) for each in json.loads(found)]
+            assert faults == []
+
+
+def written_run(folder: Path) -> None:
+    """A run without poses: enough to be listed."""
+    folder.mkdir(parents=True)
+    (folder / "poses.npz").write_bytes(b"")
+    told = {"frames": 9, "believed": 0.97, "warnings": ["it is dark"]}
+    (folder / "summary.json").write_text(json.dumps(told))
+
+
+def fill_page(looking: Looking, clip: Path) -> None:
+    """Something in every list."""
+    click(looking, "#export-walk")
+    if not looking.ask("document.querySelector('#files li')"):
+        choose(looking, clip / "cam1.avi", clip / "cam2.avi")
+    assert looking.until("!!document.querySelector('#do-track')")
+    if looking.ask("document.querySelector('#look').ariaPressed") != "true":
+        click(looking, "#look")
+    shown = "[...document.querySelectorAll('#cameras img')].filter(e => e.naturalWidth).length == 2"
+    assert looking.until(shown)
+    click(looking, "#use-file0")
+    assert looking.until("document.querySelector('#jobs li')?.dataset.state == 'failed'")
+
+
+def test_everything_is_reached_by_the_keyboard(looking: Looking, started: Started) -> None:
+    written_run(started.runs / "walk")
+    assert looking.until("!!document.querySelector('#delete-walk')")
+    reached = set()
+    for _ in range(40):
+        looking.key("Tab", 9)
+        reached.add(looking.ask("document.activeElement.id"))
+    due = {"choose-files", "look", "live-calibration", "paper", "board", "export-walk"}
+    assert due | {"format-walk", "delete-walk"} <= reached
+    looking.ask("document.querySelector('#delete-walk').focus()")
+    looking.tab.call(
+        "Input.dispatchKeyEvent", type="keyDown", key="Enter", windowsVirtualKeyCode=13, text="\r"
+    )
+    assert looking.until("document.querySelector('#asking').open")
+    assert looking.ask("document.activeElement.value") == "no", "Enter twice deletes nothing"
+    looking.key("Escape", 27)
+    assert looking.until("!document.querySelector('#asking').open")
+    assert (started.runs / "walk").is_dir()
+
+
+def test_what_is_dropped_is_seen_at_once_and_can_be_taken_away(
+    looking: Looking, started: Started, tmp_path: Path
+) -> None:
+    (tmp_path / "Calib.toml").write_text("not = a calibration")
+    looking.ask(
+        "{const data = new DataTransfer(); data.items.add(new File(['no video'], '../<b>.avi'));"
+        "dispatchEvent(Object.assign(new Event('drop', {cancelable: true}), {dataTransfer: data}))}"
+    )
+    assert looking.until("!!document.querySelector('#files .bad')")
+    assert "b_.avi" in words(looking, "#files")
+    assert not looking.ask("!!document.querySelector('#do-single')")
+    click(looking, "#files button[id^=away]")
+    assert looking.until("!document.querySelector('#files li')")
+    assert [*(started.runs / ".uploads").iterdir()] == []
+    choose(looking, tmp_path / "Calib.toml")
+    click(looking, "#do-import")
+    assert job_ended(looking) == "failed"
+    assert "Calib.toml" in words(looking, "#jobs [role=alert]")
+
+
+@pytest.mark.slow
+def test_cameras_are_seen_chosen_and_tracked_live(looking: Looking, started: Started) -> None:
+    """Two files play as cameras; the live page is the one that stands."""
+    click(looking, "#look")
+    shown = "[...document.querySelectorAll('#cameras img')].filter(e => e.naturalWidth).length == 2"
+    assert looking.until(shown)
+    assert words(looking, "#cameras").count("160x120, 15 frames a second") == 2
+    before = looking.ask("document.querySelector('#cameras img').src")
+    assert looking.until(f"document.querySelector('#cameras img').src != {before!r}")
+    click(looking, "#use-file1")
+    click(looking, "#use-file0")
+    assert looking.until("document.querySelector('#live').innerText.includes('2 cameras')")
+    click(looking, "#live")
+    assert looking.until("!!document.querySelector('#jobs a.button')", WORK_S), words(
+        looking, "#jobs"
+    )
+    assert looking.until("!document.querySelector('#cameras img')"), "no camera is held twice"
+    (settings,) = (started.runs / ".settings").iterdir()
+    first = config_file.load(settings).cameras["cam1"].source
+    assert first.endswith("cam2.avi"), "the camera that was chosen first is camera 1"
+    page = looking.ask("document.querySelector('#jobs a.button').href")
+    looking.tab.call("Page.navigate", url=page)
+    assert looking.until("document.body?.dataset.drawn", WORK_S)
+    looking.tab.call("Page.navigate", url=started.address)
+    click(looking, "#jobs button")
+    assert job_ended(looking) == "done"
+    assert looking.until("!!document.querySelector('#runs li')")
+    assert looking.ask("document.querySelector('#runs h3').innerText").startswith("live_")
+
+
+@pytest.mark.slow
+def test_two_videos_calibrate_their_cameras_and_say_how_well(
+    looking: Looking, started: Started, clip: Path
+) -> None:
+    choose(looking, clip / "cam1.avi", clip / "cam2.avi")
+    click(looking, "#do-person")
+    assert job_ended(looking) == "done", words(looking, "#jobs")
+    assert looking.until("!!document.querySelector('#calibrations li')")
+    said = words(looking, "#calibrations")
+    assert "views agree to" in said
+    assert "2 cameras" in said
+    assert looking.ask("document.querySelector('#calibration').options.length") == 2
+    assert load_rig(started.runs / ".calibrations/clip.json").cameras[1].name == "cam2"
+    assert looking.until("!!document.querySelector('#do-track')"), "the tray keeps its files"
+    assert not (started.runs / ".clips/clip").exists()

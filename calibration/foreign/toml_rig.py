@@ -56,6 +56,8 @@ def _camera(section: str, table: Facts, path: Path) -> ForeignCamera:
         raise CalibrationError(f"{path}: [{section}] is a fisheye, which is not supported")
     turn = np.array(table["rotation"], float)
     R = turn if turn.shape == (3, 3) else cv2.Rodrigues(turn.reshape(3))[0]
+    if not np.isfinite(np.array(table["size"], float)).all():
+        raise CalibrationError(f"{path}: size of [{section}] is no size: {table['size']}")
     width, height = (round(side) for side in table["size"])
     return ForeignCamera(
         str(table.get("name", section)),

@@ -8,6 +8,7 @@ from typing import Final
 import msgspec
 from msgspec import inspect
 
+from common.config.json_fault import json_fault
 from common.config.toml_fault import toml_fault
 
 SAID: Final = re.compile(r"(?P<reason>.*?)(?: - at `\$(?P<place>.*)`)?", re.DOTALL)
@@ -34,15 +35,16 @@ Step = str | int
 """A key, or an index in a list, from 0; "..." for any key."""
 
 
-def explained(error: Exception, kind: type) -> str:
+def explained(error: Exception, kind: type, json: bytes | None = None) -> str:
     """msgspec's message in plain words: the setting, the value, and what is allowed.
 
     Args:
         error: The exception that decoding raised.
         kind: The type that the file was decoded as.
+        json: The file's content, where it is JSON; None: it is TOML.
     """
     if not isinstance(error, msgspec.ValidationError):
-        return toml_fault(str(error))
+        return toml_fault(str(error)) if json is None else json_fault(str(error), json)
     said = SAID.fullmatch(str(error))
     assert said is not None, "the expression takes any text"
     place = STEP.findall(said["place"] or "")

@@ -28,8 +28,10 @@ def load_rig(path: Path, wanted: tuple[str, ...] = ()) -> Rig:
     Raises:
         CalibrationError: When the file cannot be read, lacks a part, or contradicts itself.
     """
+    content = b""
     try:
-        rig = msgspec.json.decode(path.read_bytes(), type=Rig)
+        content = path.read_bytes()
+        rig = msgspec.json.decode(content, type=Rig)
     except OSError as error:
         raise CalibrationError(
             f"cannot read the calibration {path}: {error.strerror}; make one (tritrack calibrate "
@@ -37,7 +39,9 @@ def load_rig(path: Path, wanted: tuple[str, ...] = ()) -> Rig:
         ) from error
     except (msgspec.DecodeError, RecursionError) as error:
         _refuse_what_is_not_finite(path)
-        raise CalibrationError(f"{path} is no calibration: {explained(error, Rig)}") from error
+        raise CalibrationError(
+            f"{path} is no calibration: {explained(error, Rig, content)}"
+        ) from error
     if wanted:
         by_name = {camera.name: camera for camera in rig.cameras}
         missing = [name for name in wanted if name not in by_name]

@@ -116,12 +116,14 @@ def find_calibration(settings: Settings, folder: Path) -> Path | None:
 
 def _meta(folder: Path) -> Meta:
     path = folder / "meta.json"
+    content = b""
     try:
-        meta = msgspec.json.decode(path.read_bytes(), type=Meta)
+        content = path.read_bytes()
+        meta = msgspec.json.decode(content, type=Meta)
     except FileNotFoundError:
         return Meta()
     except (OSError, msgspec.DecodeError, RecursionError) as error:
-        why = error.strerror if isinstance(error, OSError) else explained(error, Meta)
+        why = error.strerror if isinstance(error, OSError) else explained(error, Meta, content)
         raise ClipError(f"cannot read {path} ({why}): mend it or take it away") from error
     for told_hz in meta.fps.values() if isinstance(meta.fps, dict) else (meta.fps,):
         if told_hz is not None and not (math.isfinite(told_hz) and told_hz > 0):
