@@ -1,12 +1,14 @@
 """Which command follows from which files and wishes, and what is refused."""
 
 from pathlib import Path
+from typing import get_args
 
 import msgspec
 import pytest
 from command_line import unknown_in
 
-from animator.start.start_messages import Compare, Export, Open, Work
+from animator.start.start_messages import Compare, Export, Format, Open, Report, Work
+from runtime.store.run_exports import OWN_NAMES
 from tritrack.starting.job_plan import (
     Dropped,
     Known,
@@ -86,6 +88,8 @@ EVERY = (
     run_plan(Open("walk", "replay"), RUNS, 8081),
     run_plan(Open("walk", "retouch"), RUNS, 8081),
     run_plan(Export("walk", "bvh"), RUNS, 8081),
+    run_plan(Report("walk"), RUNS, 8081),
+    run_plan(Compare("walk", "walk_2"), RUNS, 8081),
     live_plan(RUNS / ".settings/live.toml", RUNS, "live", 8081),
 )
 
@@ -98,6 +102,10 @@ def test_every_plan_is_a_command_that_there_is(plan: Plan) -> None:
 def test_two_runs_are_compared_by_their_folders() -> None:
     plan = run_plan(Compare("walk", "walk_2"), RUNS, 8081)
     assert plan.command == "tritrack compare runs/walk runs/walk_2"
+
+
+def test_the_page_offers_every_format_of_the_command() -> None:
+    assert get_args(Format) == tuple(OWN_NAMES)
 
 
 def test_what_can_be_done_follows_from_what_was_dropped() -> None:

@@ -30,7 +30,7 @@ def written(path: Path) -> Path:
 
 def got(runs: Path, path: str) -> bytes | None:
     found = served(path, runs, {"walk": b"jpeg"}, {"video0": b"frame"}.get)
-    return None if found is None else found[1]
+    return None if found is None else found.content
 
 
 def test_what_is_offered_is_served(runs: Path) -> None:
@@ -42,6 +42,18 @@ def test_what_is_offered_is_served(runs: Path) -> None:
     assert got(runs, "/run/a%20run%20%C3%BC/poses.npz") == b"poses.npz"
     written(runs / "walk/body_person2.bvh")
     assert got(runs, "/run/walk/body_person2.bvh") == b"body_person2.bvh"
+
+
+def test_a_report_is_shown_without_a_script_and_the_rest_is_only_loaded(runs: Path) -> None:
+    written(runs / "walk/report.html")
+    shown = served("/run/walk/report.html", runs, {}, lambda _: None)
+    assert shown is not None
+    assert shown.kind == "text/html"
+    assert "script-src" not in shown.policy
+    assert "default-src 'none'" in shown.policy
+    loaded = served("/run/walk/poses.csv", runs, {}, lambda _: None)
+    assert loaded is not None
+    assert loaded.kind == "application/octet-stream"
 
 
 @pytest.mark.parametrize(

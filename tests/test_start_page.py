@@ -17,6 +17,7 @@ from websockets.sync.client import connect
 from websockets.typing import Origin
 
 from animator.page.door import Entrance
+from animator.page.page_server import File
 from animator.start.start_messages import (
     CHUNK_BYTES,
     CHUNK_HEAD,
@@ -36,6 +37,7 @@ from animator.start.start_messages import (
     Look,
     Open,
     Raise,
+    Report,
     Told,
     Wish,
     WishError,
@@ -45,13 +47,13 @@ from animator.start.start_messages import (
 )
 from animator.start.start_page import StartPage
 
-HELLO = Hello("runs", ("bvh",), False, False, 8, 1000)
+HELLO = Hello("runs", ("bvh",), 8, 1000)
 ENTRANCE = Entrance(token="a-long-word")
 
 
 @pytest.fixture
 def page() -> Iterator[StartPage]:
-    one = StartPage(HELLO, {"/run/a/b": ("image/jpeg", b"x")}.get, free_port(), ENTRANCE)
+    one = StartPage(HELLO, {"/run/a/b": File("image/jpeg", b"x")}.get, free_port(), ENTRANCE)
     yield one
     one.close()
 
@@ -129,7 +131,7 @@ def test_wishes_and_pieces_of_files_are_heard(page: StartPage) -> None:
 
 WISHES = (
     *(Begin(1, "a.avi", 9), Drop(None), Raise(1), Work("single"), Board("a4"), Cancel(1)),
-    *(Open("a", "replay"), Export("a", "bvh"), Compare("a", "b"), Delete("run", "a")),
+    *(Open("a", "replay"), Export("a", "bvh"), Report("a"), Compare("a", "b"), Delete("run", "a")),
     *(Look(on=True), Live(("video0",))),
 )
 

@@ -88,4 +88,4 @@ class MarkingPage:
             return site(SITE, OWN_SITE).get(path)
         place = LIVE if asked[2] == "live" else int(asked[2])
         jpeg = self._jpeg_of(int(asked[1]), place)
-        return None if jpeg is None else ("image/jpeg", jpeg)
+        return None if jpeg is None else File("image/jpeg", jpeg)

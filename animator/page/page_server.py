@@ -51,8 +51,20 @@ POLICY: Final = (
 
 log = logging.getLogger(__name__)
 
-File = tuple[str, bytes]
-"""MIME type and content."""
+REPORT_POLICY: Final = (
+    "default-src 'none'; style-src 'unsafe-inline'; img-src 'self' data:; media-src 'self' data:; "
+    "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+)
+"""The same for a page that a command wrote into a file: it has styles of its own, no script."""
+
+
+class File(NamedTuple):
+    """A file for browsers."""
+
+    kind: str
+    """MIME type."""
+    content: bytes
+    policy: str = POLICY
 
 
 def is_of_ours(record: logging.LogRecord) -> bool:
@@ -183,7 +195,7 @@ class PageServer:
         found = self._file_of(path)
         if found is None:
             return connection.respond(HTTPStatus.NOT_FOUND, "no such page\n")
-        return Response(HTTPStatus.OK, "OK", headers_of(*found), found[1])
+        return Response(HTTPStatus.OK, "OK", headers_of(*found), found.content)
 
     async def _attend(self, connection: ServerConnection) -> None:
         """Serve one browser until it disconnects."""
@@ -226,7 +238,7 @@ def site(*folders: Path) -> dict[str, File]:
     files = {}
     for path in [path for folder in folders for path in sorted(folder.iterdir())]:
         kind = mimetypes.guess_type(path.name)[0] or "application/octet-stream"
-        files[f"/{path.name}"] = kind, path.read_bytes()
+        files[f"/{path.name}"] = File(kind, path.read_bytes())
     return {**files, "/": files["/index.html"]}
 
 
@@ -239,12 +251,12 @@ def kept_token(entrance: Entrance, port: int) -> Headers:
     return headers
 
 
-def headers_of(kind: str, content: bytes) -> Headers:
+def headers_of(kind: str, content: bytes, policy: str = POLICY) -> Headers:
     """The headers of an answer of this type and content, which no other site may use."""
     said: Facts = {
         "Content-Type": f"{kind}; charset=utf-8" if kind.startswith("text/") else kind,
         "Content-Length": str(len(content)),
-        "Content-Security-Policy": POLICY,
+        "Content-Security-Policy": policy,
         "X-Content-Type-Options": "nosniff",
         "Referrer-Policy": "no-referrer",
         "Cross-Origin-Resource-Policy": "same-origin",

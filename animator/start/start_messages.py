@@ -16,7 +16,7 @@ MOST_TEXT_BYTES: Final = 10_000
 
 Task = Literal["single", "track", "person", "board", "import"]
 """A job for the dropped files."""
-Format = Literal["bvh", "gltf", "usd", "trc", "mot", "c3d", "csv"]
+Format = Literal["bvh", "gltf", "fbx", "usd", "trc", "mot", "c3d", "csv"]
 State = Literal["waiting", "running", "done", "failed", "cancelled"]
 
 
@@ -92,6 +92,12 @@ class Export(Wish, frozen=True):
     to: Format
 
 
+class Report(Wish, frozen=True):
+    """A run shall be made into a page to look at."""
+
+    run: str
+
+
 class Compare(Wish, frozen=True):
     """Two runs shall be compared."""
 
@@ -121,8 +127,8 @@ class Live(Wish, frozen=True):
     """The live page may show small pictures."""
 
 
-AnyWish = (
-    Begin | Drop | Raise | Work | Board | Cancel | Open | Export | Compare | Delete | Look | Live
+AnyWish = (Begin | Drop | Raise | Work | Board | Cancel | Open) | (
+    Export | Report | Compare | Delete | Look | Live
 )
 
 
@@ -163,10 +169,6 @@ class Hello(Section, frozen=True):
     runs: str
     """The folder of the runs."""
     formats: tuple[str, ...]
-    compares: bool
-    """Whether runs can be compared."""
-    replays: bool
-    """Whether a run of several cameras is recorded, for a replay."""
     most_files: int
     most_bytes: int
     """Of one file."""

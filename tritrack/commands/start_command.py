@@ -11,7 +11,6 @@ from tritrack.extras import refuse_without
 
 
 def start(
-    context: typer.Context,
     runs: Annotated[Path, typer.Option(help="Folder of the runs.", callback=writable)] = Path(
         "runs"
     ),
@@ -35,5 +34,4 @@ def start(
 
     for video in camera or []:
         refuse_unreadable(video)
-    commands = getattr(context.find_root().command, "commands", {})
-    serve_start(Given(runs, tuple(camera or ()), "compare" in commands), port, browser, console)
+    serve_start(Given(runs, tuple(camera or ())), port, browser, console)

@@ -7,7 +7,7 @@ from itertools import takewhile
 from pathlib import Path
 from typing import Final, Literal, NamedTuple
 
-from animator.start.start_messages import Compare, Export, Open, Task, Work
+from animator.start.start_messages import Compare, Export, Open, Report, Task, Work
 from common.bus.messages import MOST_VIEWS
 
 CLIPS: Final = ".clips"
@@ -206,7 +206,7 @@ def board_plan(runs: Path, paper: str) -> Plan:
     return Plan(f"the board to print, {paper.upper()}", (*arguments, "--paper", paper, "--force"))
 
 
-def run_plan(wish: Open | Export | Compare, runs: Path, port: int) -> Plan:
+def run_plan(wish: Open | Export | Report | Compare, runs: Path, port: int) -> Plan:
     """The plan for a run of the list.
 
     Args:
@@ -218,6 +218,8 @@ def run_plan(wish: Open | Export | Compare, runs: Path, port: int) -> Plan:
     if isinstance(wish, Export):
         arguments = ("export", folder, "--to", wish.to, "--force")
         return Plan(f"{wish.run}: write {wish.to.upper()}", arguments)
+    if isinstance(wish, Report):
+        return Plan(f"{wish.run}: make a report", ("report", folder))
     if isinstance(wish, Compare):
         return Plan(
             f"{wish.run}: compare with {wish.other}", ("compare", folder, str(runs / wish.other))

@@ -19,7 +19,7 @@ from common.npz_file import Facts
 from common.video.decoding import Decoder
 from common.video.pictures import DecoderDied, Image, Size, Undecodable, Wanted
 from runtime.store.past_run import is_run, open_run
-from runtime.store.run_exports import EXPORTS
+from runtime.store.run_exports import EXPORTS, PAGES
 
 MOST_SHOWN: Final = 100
 MOST_FILE_BYTES: Final = 1 << 29
@@ -27,7 +27,7 @@ MOST_FILE_BYTES: Final = 1 << 29
 PICTURE: Final = (320, 240)
 """Bound of a run's picture, pixels."""
 OFFERED: Final = (
-    *("overlay.mp4", "overlay.avi", "report.html", "keyframes.bvh", *EXPORTS),
+    *(*PAGES, "keyframes.bvh", *EXPORTS),
     *("poses.npz", "summary.json", "posture.json", "recording.mcap"),
 )
 """Files of a run that may be downloaded; exports of one of several people besides."""
@@ -69,7 +69,7 @@ def files_of(folder: Path) -> list[str]:
         small = path.is_file() and not path.is_symlink()
         if whole in OFFERED and small and path.stat().st_size <= MOST_FILE_BYTES:
             found.append(path.name)
-    return sorted(found, key=lambda name: (name not in OFFERED[:3], name))
+    return sorted(found, key=lambda name: (name not in PAGES, name))
 
 
 def found_runs(runs: Path) -> list[RunFiles]:

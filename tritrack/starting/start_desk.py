@@ -24,6 +24,7 @@ from animator.start.start_messages import (
     Look,
     Open,
     Raise,
+    Report,
     Told,
     WishError,
     Work,
@@ -59,7 +60,7 @@ JOBS_S: Final = 0.3
 """Interval at which jobs are shown, seconds."""
 MOST_WISHES: Final = 64
 """Largest number of wishes that are heard in a row."""
-Starting = Work | Board | Open | Export | Compare | Live
+Starting = Work | Board | Open | Export | Report | Compare | Live
 """A wish that a command follows from."""
 
 
@@ -69,8 +70,6 @@ class Given(NamedTuple):
     runs: Path
     videos: tuple[Path, ...] = ()
     """They play as cameras."""
-    compares: bool = False
-    """Whether there is a command that compares runs."""
 
 
 class StartDesk:
@@ -85,7 +84,7 @@ class StartDesk:
     """
 
     def __init__(self, given: Given, queue: JobQueue | None = None) -> None:
-        self._given, self._runs = given, given.runs
+        self._runs = given.runs
         self._queue = JobQueue() if queue is None else queue
         self._uploads = Uploads(given.runs / FOLDER)
         self._facts: dict[int, Facts] = {}
@@ -100,8 +99,6 @@ class StartDesk:
         return Hello(
             runs=str(self._runs),
             formats=get_args(Format),
-            compares=self._given.compares,
-            replays=find_spec("mcap") is not None,
             most_files=MOST_VIEWS,
             most_bytes=MOST_BYTES,
         )

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Final
 from urllib.parse import unquote
 
-from animator.page.page_server import File
+from animator.page.page_server import POLICY, REPORT_POLICY, File
 from common.atomic_file import unwritten
 from tritrack.starting.calibration_list import calibration_file
 from tritrack.starting.job_plan import CLIPS, Plan, PlanError
@@ -16,8 +16,13 @@ from tritrack.starting.run_list import run_file, run_folder
 SETTINGS: Final = ".settings"
 """Folder of the settings of live runs that the page began."""
 PICTURE: Final = "picture.jpg"
-LOADED: Final = "application/octet-stream"
-"""MIME type of what is loaded and never shown by a browser."""
+LOADED: Final = File("application/octet-stream", b"", POLICY)
+"""How a browser gets what it only loads."""
+SHOWN: Final = {
+    ".html": File("text/html", b"", REPORT_POLICY),
+    ".mp4": File("video/mp4", b"", POLICY),
+}
+"""How it gets what it shows, by the suffix."""
 
 
 def place(plan: Plan) -> None:
@@ -97,8 +102,10 @@ def served(
     elif len(parts) == 2 and parts[0] == "camera":
         jpeg = camera_jpeg(parts[1].removesuffix(".jpg"))
     if jpeg is not None:
-        return "image/jpeg", jpeg
+        return File("image/jpeg", jpeg)
     try:
-        return None if found is None else (LOADED, found.read_bytes())
+        if found is None:
+            return None
+        return SHOWN.get(found.suffix, LOADED)._replace(content=found.read_bytes())
     except OSError:
         return None

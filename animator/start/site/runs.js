@@ -3,14 +3,14 @@
 import { ask, at, button, element, fill, size } from "./parts.js";
 
 const FORMATS = {
-  bvh: "BVH: Blender and animation", gltf: "glTF: games and the web", usd: "USD: film and games", trc: "TRC: OpenSim markers",
+  bvh: "BVH: Blender and animation", gltf: "glTF: games and the web", fbx: "FBX: Unity, Unreal, Maya", usd: "USD: film and games", trc: "TRC: OpenSim markers",
   mot: "MOT: OpenSim angles", c3d: "C3D: movement laboratory", csv: "CSV: spreadsheet",
 };
 
 export function showRuns({ runs, left_out }, hello, link) {
   at("no-runs").hidden = runs.length > 0;
   const names = runs.map(({ name }) => name);
-  fill(at("runs"), runs.map((run) => ({ ...run, others: hello.compares ? names.filter((name) => name !== run.name) : [] })), ({ name }) => name, (run, old) => row(run, old, hello, link));
+  fill(at("runs"), runs.map((run) => ({ ...run, others: names.filter((name) => name !== run.name) })), ({ name }) => name, (run, old) => row(run, old, hello, link));
   if (left_out) at("runs").append(element("li", { className: "quiet" }, `${left_out} older runs are in the folder`));
 }
 
@@ -27,13 +27,14 @@ function row({ name, picture, when, what, frames, believed, notes, files, replay
       notes.length ? element("details", {}, element("summary", { className: "warn" }, `${notes.length} ${notes.length === 1 ? "remark" : "remarks"}`), element("ul", { className: "quiet" }, ...notes.map((note) => element("li", {}, note)))) : "",
       element("div", { className: "buttons" },
         open("replay", replay, "Replay"), open("retouch", retouch, "Retouch"),
+        button(`report-${name}`, "Report", () => link.say({ type: "report", run: name }), { ariaLabel: `Report of ${name}`, title: "a page with its video, angles and worst frames" }),
         format, button(`export-${name}`, "Export", () => link.say({ type: "export", run: name, to: format.value }), { ariaLabel: `export ${name}` }),
         ...(others.length ? [other, button(`compare-${name}`, "Compare", () => link.say({ type: "compare", run: name, other: other.value }), { ariaLabel: `compare ${name}` })] : []),
         button(`delete-${name}`, "Delete", async () => {
           if (await ask(`Delete the run ${name}, its files, and its copy of the videos? This cannot be undone.`)) link.say({ type: "delete", what: "run", name });
         }, { className: "danger", ariaLabel: `delete ${name}` })),
-      element("details", { open: old?.querySelector("details:last-of-type")?.open ?? false }, element("summary", {}, `${files.length} files to download`),
-        element("div", { className: "files" }, ...files.map(([address, file, bytes]) => element("a", { href: address, download: `${name}_${file}` }, `${file} (${size(bytes)})`))))));
+      element("details", { open: old?.querySelector("details:last-of-type")?.open ?? false }, element("summary", {}, `${files.length} files`),
+        element("div", { className: "files" }, ...files.map(([address, file, bytes]) => element("a", { href: address, ...(file.endsWith(".html") ? { target: "_blank", rel: "noopener" } : { download: `${name}_${file}` }) }, `${file} (${size(bytes)})`))))));
 }
 
 function chooser(id, label, options, old) {
