@@ -13,6 +13,7 @@ import pytest
 pytest.importorskip("websockets", reason="the page is an extra: install tritrack[page]")
 
 from browser import open_tab
+from spoiling import film_of, write_video
 from test_live import CHROMIUM, SIZES, SOFT, Looking
 from test_page_server import free_port
 
@@ -26,6 +27,7 @@ from tritrack.starting.start_desk import Given, StartDesk
 TOKEN = "a-long-word"
 AXE = Path(os.environ.get("AXE", "node_modules/axe-core/axe.min.js"))
 """axe-core of npm, which is no part of this project."""
+FRAMES = 36
 WORK_S = 280.0
 """For one job: a busy machine compiles nothing, but tracks slowly."""
 
@@ -59,6 +61,15 @@ def started(tmp_path: Path, clip: Path) -> Iterator[Started]:
     desk.close()
 
 
+@pytest.fixture(scope="session")
+def short(clip: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The clip's first two seconds, in which its person appears."""
+    folder = tmp_path_factory.mktemp("short")
+    for name in ("cam1.avi", "cam2.avi"):
+        write_video(folder / name, film_of(clip / name)[:FRAMES])
+    return folder
+
+
 @pytest.fixture
 def looking(started: Started) -> Iterator[Looking]:
     if CHROMIUM is None:
@@ -90,8 +101,9 @@ def words(looking: Looking, where: str) -> str:
     return str(looking.ask(f"document.querySelector({where!r})?.innerText ?? ''"))
 
 
-def job_ended(looking: Looking) -> str:
-    """The state of the newest job, once it is over."""
+def job_ended(looking: Looking, number: int = 1) -> str:
+    """The state of the newest job, of so many, once it is over."""
+    assert looking.until(f"document.querySelectorAll('#jobs li').length == {number}")
     state = "document.querySelector('#jobs li')?.dataset.state"
     over = f"['done', 'failed', 'cancelled'].includes({state})"
     assert looking.until(over, WORK_S), words(looking, "#jobs")
@@ -100,9 +112,9 @@ def job_ended(looking: Looking) -> str:
 
 @pytest.mark.slow
 def test_a_dropped_video_becomes_a_run_that_is_exported_and_deleted(
-    looking: Looking, started: Started, clip: Path
+    looking: Looking, started: Started, short: Path
 ) -> None:
-    choose(looking, clip / "cam1.avi")
+    choose(looking, short / "cam1.avi")
     assert looking.until("!!document.querySelector('#do-single')")
     told = words(looking, "#files")
     assert "cam1.avi" in told
@@ -121,7 +133,7 @@ def test_a_dropped_video_becomes_a_run_that_is_exported_and_deleted(
 
     looking.ask("document.querySelector('#format-walk').value = 'csv'")
     click(looking, "#export-walk")
-    assert job_ended(looking) == "done", words(looking, "#jobs")
+    assert job_ended(looking, 2) == "done", words(looking, "#jobs")
     link = "document.querySelector('#runs a[download=\"walk_poses.csv\"]')"
     assert looking.until(f"!!{link}")
     rows = looking.tab.call(
