@@ -7,7 +7,7 @@ import msgspec
 import pytest
 from command_line import unknown_in
 
-from animator.start.start_messages import Compare, Export, Format, Open, Report, Work
+from animator.start.wishes import Compare, Export, Format, Open, Report, Work
 from runtime.store.run_exports import OWN_NAMES
 from tritrack.starting.job_plan import (
     Dropped,

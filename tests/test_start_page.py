@@ -18,7 +18,9 @@ from websockets.typing import Origin
 
 from animator.page.door import Entrance
 from animator.page.page_server import File
-from animator.start.start_messages import (
+from animator.start.sections import Got, Hello, Jobs, Told, encoded
+from animator.start.start_page import StartPage
+from animator.start.wishes import (
     CHUNK_BYTES,
     CHUNK_HEAD,
     MOST_TEXT_BYTES,
@@ -30,22 +32,16 @@ from animator.start.start_messages import (
     Delete,
     Drop,
     Export,
-    Got,
-    Hello,
-    Jobs,
     Live,
     Look,
     Open,
     Raise,
     Report,
-    Told,
     Wish,
     WishError,
     Work,
-    encoded,
     heard,
 )
-from animator.start.start_page import StartPage
 
 HELLO = Hello("runs", ("bvh",), 8, 1000)
 ENTRANCE = Entrance(token="a-long-word")

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from animator.start.start_messages import Begin, Chunk
+from animator.start.wishes import Begin, Chunk
 from common.bus.messages import MOST_VIEWS
 from tritrack.starting.uploads import MOST_BYTES, UploadRefused, Uploads, safe_name
 

@@ -8,17 +8,8 @@ from typing import Final
 
 from animator.page.door import Entrance
 from animator.page.page_server import SITE, File, PageServer, site
-from animator.start.start_messages import (
-    MOST_SAID_BYTES,
-    AnyWish,
-    Chunk,
-    Got,
-    Hello,
-    Section,
-    Told,
-    encoded,
-    heard,
-)
+from animator.start.sections import Got, Hello, Section, Told, encoded
+from animator.start.wishes import MOST_SAID_BYTES, AnyWish, Chunk, heard
 
 OWN_SITE: Final = Path(__file__).parent / "site"
 

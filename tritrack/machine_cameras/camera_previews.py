@@ -6,7 +6,7 @@ from collections.abc import Generator, Sequence
 from typing import Final
 
 from animator.marking.marking_page import LIVE
-from animator.start.start_messages import Cameras, ShownCamera
+from animator.start.sections import Cameras, ShownCamera
 from common.config.picture_size import working_size
 from common.video.clip_sources import ClipError
 from common.video.clips import probed

@@ -4,7 +4,7 @@ import time
 from pathlib import Path
 from typing import Final
 
-from animator.start.start_messages import Calibrations, ShownCalibration
+from animator.start.sections import Calibrations, ShownCalibration
 from common.rig.rig_file import CalibrationError, load_rig
 from tritrack.starting.job_plan import CALIBRATIONS, NAME, kept_calibration
 

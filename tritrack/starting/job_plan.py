@@ -7,7 +7,7 @@ from itertools import takewhile
 from pathlib import Path
 from typing import Final, Literal, NamedTuple
 
-from animator.start.start_messages import Compare, Export, Open, Report, Task, Work
+from animator.start.wishes import Compare, Export, Open, Report, Task, Work
 from common.bus.messages import MOST_VIEWS
 
 CLIPS: Final = ".clips"

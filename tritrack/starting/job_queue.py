@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import IO, Final
 
-from animator.start.start_messages import Jobs, ShownJob, State
+from animator.start.sections import Jobs, ShownJob, State
 from runtime.terminal import PROGRESS
 from tritrack.starting.job_plan import Kind, Plan, PlanError
 from tritrack.starting.job_progress import Progress, step, words

@@ -12,7 +12,7 @@ import cv2
 import numpy as np
 
 from animator.overlay import draw_stick
-from animator.start.start_messages import Runs, ShownRun
+from animator.start.sections import Runs, ShownRun
 from common.body.body import Vector
 from common.config.picture_size import size_of, working_size
 from common.npz_file import Facts

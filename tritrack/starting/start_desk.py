@@ -7,7 +7,9 @@ from pathlib import Path
 from typing import Final, NamedTuple, get_args
 
 from animator.page.page_server import File
-from animator.start.start_messages import (
+from animator.start.sections import Got, Hello, Told
+from animator.start.start_page import StartPage
+from animator.start.wishes import (
     AnyWish,
     Begin,
     Board,
@@ -18,18 +20,14 @@ from animator.start.start_messages import (
     Drop,
     Export,
     Format,
-    Got,
-    Hello,
     Live,
     Look,
     Open,
     Raise,
     Report,
-    Told,
     WishError,
     Work,
 )
-from animator.start.start_page import StartPage
 from common.bus.messages import MOST_VIEWS
 from runtime.live.free_ports import free_port
 from tritrack.machine_cameras.live_settings import live_settings

@@ -5,7 +5,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Final, NamedTuple
 
-from animator.start.start_messages import ShownFile, Tray
+from animator.start.sections import ShownFile, Tray
 from common.bus.messages import MOST_VIEWS
 from common.video.clip_sources import ClipError
 from common.video.clips import probed

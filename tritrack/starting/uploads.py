@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Final
 
-from animator.start.start_messages import Begin, Chunk
+from animator.start.wishes import Begin, Chunk
 from common.atomic_file import unwritten
 from common.bus.messages import MOST_VIEWS
 
