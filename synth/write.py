@@ -12,14 +12,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.rig.camera import Camera, Rig, project
+from synth.motion.crossing import crossing
 from synth.motion.motions import POSTURES, Motion, movement, performance
 from synth.motion.on_spot import on_spot
 from synth.motion.streaming import streamed
 from synth.person.people import MEASURE_NAMES, Person, measure_vector, person
 from synth.person.skeleton import ANGLES, JOINTS
+from synth.picture.actors import Part
 from synth.picture.exposure import blurred, exposures
 from synth.picture.random_rig import MOST_CAMERAS, rig_around
-from synth.picture.render import Shot, render
+from synth.picture.render import Shot, render, render_scene
 
 FPS: Final = 15.0
 """The paper's frame rate (P1)."""
@@ -28,8 +30,10 @@ Packed = NDArray[np.uint8]
 """Masks packed by `np.packbits(mask, axis=-1)`."""
 
 PHASES: Final = ("empty", "tpose", "transition", "motion")
-ALONE: Final = ("free", "fall", "stream", "spot")
+ALONE: Final = ("free", "fall", "stream", "spot", "cross")
 """Motions that are one take each, not one per posture."""
+PASSERS: Final = 1_000_000
+"""What is added to a performer's number to give that of the person who crosses."""
 ROOM_SEED: Final = 7919
 """Factor that separates the room seeds of successive sets: a prime larger than any set."""
 
@@ -41,9 +45,9 @@ class SynthError(ValueError):
 class ClipSet(NamedTuple):
     """Content of a set of clips."""
 
-    motion: Literal["postures", "free", "fall", "stream", "spot"]
+    motion: Literal["postures", "free", "fall", "stream", "spot", "cross"]
     """The named postures; free motion; free motion with falls; all postures in one take; on one
-    spot from the first frame."""
+    spot from the first frame; the same while a second person walks past."""
     performers: int = 1
     """Number of people; the first of seed s is person(s * performers)."""
     takes: int = 1
@@ -103,18 +107,24 @@ def write_set(
     for done, (number, take, posture) in enumerate(jobs, 1):
         someone = person(seed * performers + number)
         own = take + 1000 * seed
-        if motion == "stream":
-            moved = streamed(someone, own, FPS, postures)
-        elif motion == "spot":
-            moved = on_spot(someone, own, FPS)
-        else:
-            moved = performance(someone, posture, own, FPS)
+        moved = _taken(someone, own, posture, postures)
+        other = person(PASSERS + seed * performers + number)
+        passer = Part(other, crossing(other, own, moved)) if motion == "cross" else None
         folders.append(out / clip_name(someone, posture, take))
         filming = Filming(rig, seed * ROOM_SEED + number, own, moving)
-        write_clip(folders[-1], someone, moved, filming, take)
+        write_clip(folders[-1], someone, moved, filming, take, passer)
         if progress is not None:
             progress(done, len(jobs))
     return folders
+
+
+def _taken(someone: Person, seed: int, posture: str, postures: tuple[str, ...]) -> Motion:
+    """One take of a motion by a person."""
+    if posture == "stream":
+        return streamed(someone, seed, FPS, postures)
+    if posture in {"spot", "cross"}:
+        return on_spot(someone, seed, FPS)
+    return performance(someone, posture, seed, FPS)
 
 
 def clip_name(someone: Person, posture: str, take: int) -> str:
@@ -123,7 +133,14 @@ def clip_name(someone: Person, posture: str, take: int) -> str:
     return f"{someone.name}_t{take}_{number:02d}_{posture}"
 
 
-def write_clip(folder: Path, someone: Person, motion: Motion, filming: Filming, take: int) -> None:
+def write_clip(
+    folder: Path,
+    someone: Person,
+    motion: Motion,
+    filming: Filming,
+    take: int,
+    passer: Part | None = None,
+) -> None:
     """One clip: cam1.avi, cam2.avi, ... (Motion JPEG), meta.json, truth.npz.
 
     Args:
@@ -132,13 +149,18 @@ def write_clip(folder: Path, someone: Person, motion: Motion, filming: Filming, 
         motion: Their motion.
         filming: The equipment.
         take: Number of the take, for the metadata.
+        passer: A second person, who is in the pictures and not in the truth.
 
     Raises:
         SynthError: When a video cannot be written there.
     """
     rig, room_seed, seed, moving = filming
     folder.mkdir(parents=True, exist_ok=True)
-    shots = render(someone, motion, rig, room_seed, seed, moving)
+    if passer is None:
+        shots = render(someone, motion, rig, room_seed, seed, moving)
+    else:
+        of_both = render_scene((Part(someone, motion), passer), rig, room_seed, seed, moving=moving)
+        shots = (Shot(shot.frames, tuple(mask[0] for mask in shot.masks)) for shot in of_both)
     masks = filmed(folder, shots, rig, motion.fps)
     meta = meta_of(someone, motion, filming, take)
     (folder / "meta.json").write_text(json.dumps(meta, indent=1) + "\n")

@@ -25,7 +25,7 @@ from viewer.landmarks.person_mask import LandmarkResult, Shown
 from viewer.paper import pose_search
 from viewer.paper.measure import opening_measure
 from viewer.people.known_people import forgotten, of_one
-from viewer.people.observed_people import everyone, observed
+from viewer.people.observed_people import everyone
 from viewer.room.silhouette_correction import corrected, is_trusted
 from viewer.silhouette import silhouette
 from viewer.silhouette.silhouette import Seen
@@ -48,10 +48,16 @@ class Setup(NamedTuple):
     """True for the only viewer of its run."""
 
     @property
+    def is_placed(self) -> bool:
+        """True: the integrator knows by places which of this view's people it follows; otherwise it
+        takes the first."""
+        return self.alone or self.camera is not None
+
+    @property
     def searches(self) -> bool:
         """True: this viewer searches for the pose, angle by angle; otherwise the integrator
         reads it off the silhouettes, and this viewer only segments and measures."""
-        proposed = self.method.proposals and (self.alone or self.camera is not None)
+        proposed = self.method.proposals and self.is_placed
         return not (proposed or self.method.stick_lifting)
 
 
@@ -171,10 +177,9 @@ def look(state: State, frame: CapturedFrame, guide: Guide | None) -> tuple[State
             remembered, state.silhouette, frame.picture, held.things
         )
     seen = held.seen
-    if setup.settings.people == 1:
-        people = observed(seen, shown, least_share)
-    else:
-        people = everyone(remembered, frame.picture, seen, shown, least_share)
+    people = everyone(remembered, frame.picture, seen, shown, least_share)
+    if shown.followed.landmarks is None and shown.others and not setup.is_placed:
+        people = ()
     view = _view_of(setup.viewer, frame, seen, people)
     if state.moved is not None:
         view = msgspec.structs.replace(view, shift=state.moved.shift)

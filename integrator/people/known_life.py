@@ -1,5 +1,6 @@
 """A person among several, between instants."""
 
+import math
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -42,14 +43,19 @@ class Life(NamedTuple):
     """For each view, when it last showed them."""
     joints_m: Places | None = None
     """As last believed."""
-    joints_s: float = 0.0
-    """When that was."""
+    joints_s: float = -math.inf
+    """When that was; -inf: never."""
     velocity_m_s: tuple[float, float, float] = (0.0, 0.0, 0.0)
     colours: tuple[tuple[float, ...], ...] = ()
     """For each view, the mean colours of their clothes, as `Observation.colours`; empty: unknown.
     A camera's own colours differ less than those of two."""
     coloured: tuple[int, ...] = ()
     """For each view, the number of instants in it."""
+
+    @property
+    def was_believed(self) -> bool:
+        """Whether they were ever believed."""
+        return self.joints_s > -math.inf
 
     def expected_m(self, now_s: float) -> Places | None:
         """The joints expected at a time; None where the person was never believed."""

@@ -74,7 +74,13 @@ def render(
 
 
 def render_scene(
-    parts: Sequence[Part], rig: Rig, room_seed: int, seed: int, things: Sequence[Thing] = ()
+    parts: Sequence[Part],
+    rig: Rig,
+    room_seed: int,
+    seed: int,
+    things: Sequence[Thing] = (),
+    *,
+    moving: bool = False,
 ) -> Iterator[Shot]:
     """The frames of several people in a room: what is nearer hides what is farther.
 
@@ -84,9 +90,10 @@ def render_scene(
         room_seed: As for `render`.
         seed: As for `render`.
         things: What they carry, of the same frames.
+        moving: As for `render`.
     """
     cast = (*map(actor_of, parts), *map(thing_of, things))
-    scene = _Scene(cast, len(parts), room_of(room_seed, rig), rig, _scale(rig), solid=True)
+    scene = _Scene(cast, len(parts), room_of(room_seed, rig, moving), rig, _scale(rig), solid=True)
     return _shots(scene, parts[0].motion.fps, seed)
 
 

@@ -99,8 +99,11 @@ def line_of_runs(clips: Mapping[str, Mapping[str, Any]], out: Path) -> str:
 def synth(
     out: Out,
     motion: Annotated[
-        Literal["postures", "free", "fall", "stream", "spot"] | None,
-        typer.Option(help="15 postures, free, falls, postures in one take, always on one spot."),
+        Literal["postures", "free", "fall", "stream", "spot", "cross"] | None,
+        typer.Option(
+            help="15 postures, free, falls, postures in one take, always on one spot, a second "
+            "person walks past one on a spot."
+        ),
     ] = None,
     performers: Annotated[
         int | None, typer.Option(min=1, max=1000, help="How many people, one in each clip.")
