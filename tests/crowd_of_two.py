@@ -1,6 +1,7 @@
 """Two people before both cameras of the paper's rig, as silhouettes with landmarks."""
 
 from collections.abc import Sequence
+from typing import Literal
 
 import msgspec
 import numpy as np
@@ -19,7 +20,7 @@ from common.rig.camera import project
 from integrator import merge_state
 from integrator.merge_state import Start
 from integrator.people import several
-from integrator.people.several import State
+from integrator.people.recognition import State
 
 RED = (50.0, 60.0, 40.0, 40.0, 0.0, 0.0)
 BLUE = (40.0, 10.0, -60.0, 60.0, 0.0, 0.0)
@@ -59,10 +60,10 @@ def of_all(n: int, people: Sequence[Sequence[Observation | None]], order: int = 
 
 
 class Crowd:
-    """The integrator of several people, stepped."""
+    """The integrator of several people, or of one among them, stepped."""
 
-    def __init__(self) -> None:
-        state = merge_state.init(RIG, PERIOD_S, Settings(people="all"), DEFAULT, Start())
+    def __init__(self, people: Literal[1, "all"] = "all") -> None:
+        state = merge_state.init(RIG, PERIOD_S, Settings(people=people), DEFAULT, Start())
         self.state, self.n = State(state), 0
 
     def see(self, *people: Sequence[Observation | None], order: int = 1) -> tuple[Body, ...]:

@@ -18,7 +18,7 @@ from viewer.captured_frame import CapturedFrame
 from viewer.landmark_step import State, step
 from viewer.landmarks.landmark_window import Window
 from viewer.landmarks.person_mask import LandmarkResult, PersonMask, Shown, likeliest
-from viewer.people.observed_people import everyone, observed
+from viewer.people.observed_people import everyone
 from viewer.room.silhouette_correction import corrected
 from viewer.silhouette import silhouette as silhouettes
 from viewer.silhouette.silhouette import Seen
@@ -45,6 +45,15 @@ def columns(mask: Mask) -> tuple[int, int]:
     return int(held[0]), int(held[-1]) + 1
 
 
+EMPTY = np.full((*SHAPE, 3), 90, np.uint8)
+
+
+def observed(first: Seen, shown: Shown, least_share: float) -> tuple[Observation, ...]:
+    """Everyone before a wall of one colour, where the network alone shows who is where."""
+    room = silhouettes.init(learn([EMPTY]), SilhouetteSettings(), DEFAULT)
+    return everyone(room, EMPTY, first, shown, least_share)
+
+
 def test_the_followed_person_is_first_and_others_have_their_own_pixels() -> None:
     shown = Shown(result(4, 20), 3, ((5, result(16, 30, 1.0)), (7, result(28, 44, 3.0))))
     first, second, third = observed(silhouette(4, 20), shown, 0.15)
@@ -65,12 +74,7 @@ def test_no_pixel_of_the_followed_silhouette_is_anothers_too() -> None:
     assert columns(unpack(other)) == (20, 36)
 
 
-def test_without_the_followed_person_no_person_is_reported() -> None:
-    """The first is the followed one: no other may stand in that place."""
-    other = (5, result(28, 44))
-    assert observed(silhouette(4, 20), Shown(LandmarkResult(None), 3, (other,)), 0.15) == ()
-    nothing = Seen(np.zeros(SHAPE, np.bool_), None, 0, 0, cut=False)
-    assert observed(nothing, Shown(result(4, 20), 3, (other,)), 0.15) == ()
+def test_a_silhouette_without_landmarks_is_a_person_where_no_landmarks_show_any() -> None:
     (alone,) = observed(silhouette(4, 20), Shown(LandmarkResult(None), 3), 0.15)
     assert (alone.track, alone.landmarks) == (3, None)
 
@@ -108,9 +112,6 @@ def test_of_a_region_that_holds_two_people_the_silhouette_is_the_followed_ones()
     assert not apart.is_changed
 
 
-EMPTY = np.full((*SHAPE, 3), 90, np.uint8)
-
-
 def two_at(first: tuple[int, int], second: tuple[int, int]) -> tuple[Observation, ...]:
     """Everyone in a picture of a room in which two people stand in some columns; the network sees
     each a column narrower at both sides."""
@@ -144,19 +145,15 @@ def test_who_stands_beside_another_has_none_of_their_pixels() -> None:
 
 
 def test_a_pixel_that_is_likelier_the_followed_persons_is_not_anothers() -> None:
-    """Before a wall of one colour, where the network alone shows who is where."""
-    room = silhouettes.init(learn([EMPTY]), SilhouetteSettings(), DEFAULT)
     shown = Shown(result(4, 24, 4.0), 3, ((5, result(16, 36, 2.0)),))
-    _, second = everyone(room, EMPTY, silhouette(4, 24), shown, 0.15)
+    _, second = observed(silhouette(4, 24), shown, 0.15)
     assert columns(unpack(second)) == (24, 36)
 
 
 def test_of_everyone_those_without_landmarks_are_left_out_and_the_others_stay() -> None:
-    room = silhouettes.init(learn([EMPTY]), SilhouetteSettings(), DEFAULT)
     shown = Shown(LandmarkResult(None), 3, ((5, result(16, 30)),))
-    found = everyone(room, EMPTY, silhouette(4, 14), shown, 0.15)
+    found = observed(silhouette(4, 14), shown, 0.15)
     assert [each.track for each in found] == [5]
-    assert everyone(room, EMPTY, silhouette(4, 14), Shown(LandmarkResult(None)), 0.15) == ()
 
 
 @lru_cache(maxsize=1)
@@ -170,7 +167,8 @@ def pairs() -> list[tuple[Crowd, tuple[Observation, ...]]]:
         frame = CapturedFrame(0, 0.0, 0.0, scene.picture)
         _, shown = step(State(), frame, both, Settings(), alone=False)
         held = corrected(both, shown.followed, 0.15, shown.masks)
-        made.append((scene, observed(held.seen, shown, 0.15)))
+        room = silhouettes.init(learn([scene.picture]), SilhouetteSettings(), DEFAULT)
+        made.append((scene, everyone(room, scene.picture, held.seen, shown, 0.15)))
     return made
 
 

@@ -10,8 +10,9 @@ from test_rig_agreement import turned
 from common.bus.control_messages import Command
 from common.bus.messages import Body
 from integrator.measuring.known_body import Unmeasured
-from integrator.people import several
-from integrator.people.several import BORN_S, KEPT_S, State
+from integrator.people import recognition, several
+from integrator.people.lived_instant import KEPT_S
+from integrator.people.recognition import BORN_S, State
 from runtime.unfinished.state_codec import packed, unpacked
 
 LEFT, RIGHT = shown(LEFT_M, (0, 0), RED), shown(RIGHT_M, (1, 1), BLUE)
@@ -164,7 +165,7 @@ def test_bodies_come_by_number_whoever_was_exchanged() -> None:
 
 
 def test_no_more_people_are_known_than_the_bound(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(several, "MOST", 1)
+    monkeypatch.setattr(recognition, "MOST", 1)
     crowd = Crowd()
     crowd.see(LEFT)
     assert [body.person for body in crowd.last(2 * AFTER_BIRTH, LEFT, RIGHT)] == [1]

@@ -21,7 +21,7 @@ from viewer.background.moved_objects import Patch
 from viewer.captured_frame import CapturedFrame
 from viewer.landmarks.person_mask import LandmarkResult, Shown
 from viewer.people.known_people import of_one
-from viewer.people.observed_people import observed
+from viewer.people.observed_people import everyone
 from viewer.room.silhouette_correction import Corrected
 from viewer.silhouette import silhouette
 from viewer.silhouette.silhouette import Seen
@@ -162,7 +162,9 @@ def test_a_report_tells_what_the_silhouette_shows_and_when() -> None:
     mask[10:50, 20:30] = True
     box = Box(left=20, right=29, top=10, bottom=49)
     shape = Seen(mask, box, 400, 3, cut=True)
-    report = track._view_of(2, frame(), shape, observed(shape, Shown(LandmarkResult(None)), 0.15))
+    state = track.init(setup(), room())
+    seen = everyone(state.silhouette, frame().picture, shape, Shown(LandmarkResult(None)), 0.15)
+    report = track._view_of(2, frame(), shape, seen)
     assert (report.frame, report.viewer, report.width, report.height) == (7, 2, WIDE, HIGH)
     assert (report.captured_s, report.clock_s, report.next_s) == (0.5, 1000.5, 0.6)
     person = person_of(report)

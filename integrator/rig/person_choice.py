@@ -26,6 +26,9 @@ AWAY_COST: Final = 5.0
 two views show costs more than views that clash about the expected one."""
 LATER_COST: Final = 0.25
 """Cost of a person whom the viewer does not follow."""
+SMALL_COST: Final = 2.0
+"""Cost of a person of no height, beside the tallest of the view, where none is expected; it falls
+with the height."""
 
 
 def costs_of(camera: Camera, people: People, expected_m: Vector | None) -> list[float]:
@@ -37,8 +40,12 @@ def costs_of(camera: Camera, people: People, expected_m: Vector | None) -> list[
         expected_m: Expected place of the person, (3,) world; None: none is followed.
     """
     costs = [LATER_COST * (index > 0) for index in range(len(people))]
-    if expected_m is None or not people:
+    if not people:
         return costs
+    if expected_m is None:
+        highs = [person.box.bottom + 1 - person.box.top for person in people]
+        small = [1.0 - high / max(highs) for high in highs]
+        return [cost + SMALL_COST * each for cost, each in zip(costs, small, strict=True)]
     at_px = project(camera, expected_m[None])[0]
     away = [_away_heights(person, at_px) for person in people]
     return [cost + AWAY_COST * far for cost, far in zip(costs, away, strict=True)]

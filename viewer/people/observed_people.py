@@ -3,6 +3,7 @@
 from typing import Final
 
 import msgspec
+import numpy as np
 
 from common.body.body import JOINT_NAMES
 from common.body.observation import Landmarks, Observation
@@ -12,7 +13,7 @@ from viewer.landmarks.person_mask import PersonMask, Shown
 from viewer.people.clothes_colours import clothes_colours
 from viewer.room.silhouette_correction import corrected
 from viewer.silhouette import silhouette
-from viewer.silhouette.silhouette import Seen
+from viewer.silhouette.silhouette import Seen, seen_of
 
 PELVIS: Final = JOINT_NAMES.index("pelvis")
 
@@ -37,9 +38,18 @@ def everyone(
         if result.landmarks is not None:
             first = silhouette.at(room, picture, result.landmarks.joints_px[PELVIS])
             rivals = _rivals(shown, number, shown.followed.person)
-            people.append((number, corrected(first, result, least_share, rivals).seen, result))
+            own = corrected(first, result, least_share, rivals).seen
+            people.append((number, _less(own, seen, least_share), result))
     each = (_observation(own, result.landmarks, number) for number, own, result in people)
     return tuple(_coloured(picture, one) for one in each if one is not None)
+
+
+def _less(own: Seen, followed: Seen, least_share: float) -> Seen:
+    """A silhouette without the followed person's pixels."""
+    shared = own.mask & followed.mask
+    if not shared.any():
+        return own
+    return seen_of((own.mask & ~shared).view(np.uint8), own.blobs, least_share)
 
 
 def _coloured(picture: Image, one: Observation) -> Observation:
