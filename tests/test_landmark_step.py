@@ -315,3 +315,12 @@ def test_in_an_empty_room_no_person_is_seen() -> None:
     empty = frame(0.0, picture=acted()[3])
     state, shown = step(State(), empty, nobody(), SETTINGS, alone=False)
     assert (shown, state.known) == (Shown(LandmarkResult(None)), None)
+
+
+def test_everyone_is_seen_in_the_first_frame_also_where_one_is_known_from_the_whole_video(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Else each view would begin with another person, and both would be taken for one."""
+    scene = Scene(monkeypatch, standing(60.0), standing(250.0))
+    _, shown = scene.step(State(of_one(scene.people[0])), 0.0)
+    assert columns(shown) == pytest.approx([column(each) for each in scene.people])

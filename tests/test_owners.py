@@ -14,18 +14,15 @@ from common.method import DEFAULT
 from integrator import merge_state
 from integrator.people import owners
 from integrator.people.known_life import Life
-from integrator.people.owners import (
+from integrator.people.observation_cost import (
     AWAY_S,
     NEAR_M,
-    SURE_AFTER,
     UNLIKE,
-    Owned,
     cost_of,
-    exchanged,
-    mistaken,
+    hidden_shares,
     off_m,
-    owned,
 )
+from integrator.people.owners import SURE_AFTER, Owned, exchanged, mistaken, owned
 from integrator.people.sight_gaps import (
     GAP_COLOUR_M,
     INSTANTS,
@@ -211,3 +208,25 @@ def test_colours_differ_by_the_mean_of_both_parts() -> None:
     assert colour_distance((50.0, 0.0, 0.0) * 2, (50.0, 30.0, 40.0, 50.0, 0.0, 0.0)) == 25.0 / 40.0
     assert colour_distance((), RED) == 0.0
     assert colour_distance(RED, BLUE) > UNLIKE
+
+
+BEHIND_M, BEFORE_M = (0.0, -0.6), (0.0, 0.6)
+"""Places in one line of sight of camera 1."""
+
+
+def test_who_stands_behind_another_is_hidden_in_that_view_alone() -> None:
+    far, near = (life(n, place).joints_m for n, place in enumerate((BEHIND_M, BEFORE_M)))
+    hidden, shown_whole = hidden_shares(RIG.cameras[0], [far, near])
+    assert hidden > 0.9
+    assert shown_whole == 0.0
+    assert hidden_shares(RIG.cameras[1], [far, near]).max() < 0.4
+    assert hidden_shares(RIG.cameras[0], [far, None]).tolist() == [0.0, 0.0]
+
+
+def test_the_one_person_whom_a_view_shows_of_two_in_line_is_the_nearer() -> None:
+    """Whatever number the viewer gives them: it lost the other there."""
+    lives = [life(1, BEHIND_M), life(2, BEFORE_M)]
+    front, side = (shown(place, (0, n), ()) for n, place in enumerate((BEFORE_M, BEHIND_M)))
+    views = [[front[0]], [front[1], side[1]]]
+    people: People = [[one for one in view if one is not None] for view in views]
+    assert [own[0] for own in owned_now(people, lives).known] == [-1, 0]

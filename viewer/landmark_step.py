@@ -97,8 +97,9 @@ def step(
         state = state._replace(searched_s=frame.captured_s)
     else:
         looks, new = _looks(frame.picture, seen, people, model), list[LandmarkResult]()
+        is_first = state.searched_s == -math.inf
         state = _due(state, frame, _interval_s(people, looks[people.followed], seen))
-        if not people.tracks:
+        if is_first or not people.tracks:
             state = searched(state)
         if state.detected is not None:
             looks, new = _looked_again(frame.picture, looks, people, model, state.detected)

@@ -8,9 +8,10 @@ import numpy as np
 
 from calibration.gate.sight_clash import MEETS_M
 from common.body.observation import Observation
-from common.rig.camera import Camera, Rig, project
+from common.rig.camera import Rig
 from integrator.belief import NOBODY
-from integrator.people.known_life import Life, Places
+from integrator.people.known_life import Life
+from integrator.people.observation_cost import HIDDEN, UNLIKE, cost_of, hidden_shares
 from integrator.people.sight_gaps import (
     Apart,
     Gap,
@@ -20,26 +21,6 @@ from integrator.people.sight_gaps import (
     sight_gap_m,
 )
 
-NEAR_M: Final = 0.5
-"""Distance in a picture, at the person's depth, from which on an observation is not of a person who
-was seen in the instant before, metres."""
-REACH_M_S: Final = 1.5
-"""By how much that grows for each second in which no view shows them: walking pace."""
-FARTHEST_M: Final = 4.0
-"""Its upper bound."""
-COUNTS: Final = 0.3
-"""Confidence from which a joint counts."""
-FEWEST: Final = 4
-"""Fewest joints that place a person; of fewer the middle of the silhouette counts."""
-KEEPS: Final = 0.2
-"""By how much cheaper the observation is that carries the viewer's number of the person."""
-AWAY: Final = 0.3
-"""Cost of a person whom no view has shown for AWAY_S, beside one who has just been seen."""
-AWAY_S: Final = 0.5
-UNLIKE: Final = 1.0
-"""Difference of colours that is a person's own at most, over a wall's light and shadow."""
-COLOUR_COST: Final = 0.5
-"""Cost of such a difference."""
 AMONG: Final = 0.5
 """Share of the next best gap below which that of two observations is clearly one person's."""
 WRONG_M: Final = 0.02
@@ -88,6 +69,7 @@ def owned(
         costs = np.array(
             [[cost_of(camera, view, life, each, now_s) for each in people[view]] for life in lives]
         ).reshape(len(lives), len(people[view]))
+        costs += HIDDEN * hidden_shares(camera, [life.expected_m(now_s) for life in lives])[:, None]
         for row, column in _assigned(costs):
             known[row][view] = column
     _attach(people, known, gaps)
@@ -123,32 +105,6 @@ def doubles(
     return found
 
 
-def cost_of(camera: Camera, view: int, life: Life, seen: Observation, now_s: float) -> float:
-    """Cost of an observation as that of a known person, in [0, 1]; 1 or more: it is not theirs.
-
-    Args:
-        camera: The view's, without distortion.
-        view: Its place in the rig.
-        life: The person.
-        seen: The observation.
-        now_s: Capture time.
-    """
-    unlike = colour_distance(life.colours_in(view), seen.colours)
-    unseen_s = life.unseen_s(now_s)
-    is_away = unseen_s > AWAY_S
-    if is_away and unlike > UNLIKE:
-        return np.inf
-    expected_m = life.expected_m(now_s)
-    if expected_m is None:
-        return 0.0 if life.tracks[view] == seen.track else np.inf
-    gate_m = min(NEAR_M + REACH_M_S * unseen_s, FARTHEST_M)
-    far = off_m(camera, expected_m, seen) / gate_m
-    if not far < 1.0:
-        return np.inf
-    keeps = KEEPS * (life.tracks[view] == seen.track)
-    return max(0.0, 0.5 * far + AWAY * is_away + COLOUR_COST * min(unlike, UNLIKE) - keeps)
-
-
 def exchanged(
     people: People, lives: Sequence[Life], known: Sequence[Sequence[int]]
 ) -> list[tuple[int, int]]:
@@ -178,32 +134,6 @@ def _exchange_gain(
     own = colour_distance(mine, first.colours) + colour_distance(theirs, second.colours)
     others = colour_distance(mine, second.colours) + colour_distance(theirs, first.colours)
     return (own - others) / (2.0 * between)
-
-
-def off_m(camera: Camera, joints_m: Places, seen: Observation) -> float:
-    """Median distance of an observation's joints from a person's in the picture, metres at the
-    person's depth; infinite where the person is behind the camera.
-
-    Args:
-        camera: Without distortion.
-        joints_m: The person's.
-        seen: The observation.
-    """
-    places_px = project(camera, joints_m)
-    depth_m = float((joints_m @ np.array(camera.R).T + np.array(camera.t))[:, 2].mean())
-    if np.isnan(places_px).any() or depth_m <= 0.0:
-        return np.inf
-    px_per_m = float(camera.K[0][0]) / depth_m
-    shown = seen.landmarks
-    sure = np.zeros(len(joints_m), np.bool_)
-    if shown is not None:
-        sure = np.array(shown.confidence) > COUNTS
-    if shown is None or sure.sum() < FEWEST:
-        box = seen.box
-        middle_px = (box.left + box.right + 1) / 2, (box.top + box.bottom + 1) / 2
-        return float(np.linalg.norm(places_px.mean(axis=0) - middle_px)) / px_per_m
-    off_px = np.linalg.norm(places_px - np.array(shown.joints_px), axis=1)[sure]
-    return float(np.median(off_px)) / px_per_m
 
 
 def _assigned(costs: np.ndarray) -> list[tuple[int, int]]:
