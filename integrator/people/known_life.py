@@ -69,6 +69,10 @@ class Life(NamedTuple):
         own = self.colours[view] if self.colours else ()
         return own or next((each for each in self.colours if each), ())
 
+    def has_colours_in(self, view: int) -> bool:
+        """Whether that view itself has shown their clothes."""
+        return bool(self.colours and self.colours[view])
+
     def unseen_s(self, now_s: float) -> float:
         """How long no view has shown them."""
         return now_s - self.seen_s

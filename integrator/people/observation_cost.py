@@ -31,8 +31,11 @@ AWAY_S: Final = 0.5
 HIDDEN: Final = 0.4
 """Cost of a person all of whose joints are behind one who is nearer to the camera."""
 UNLIKE: Final = 1.0
-"""Difference of colours that is a person's own at most, over a wall's light and shadow."""
-COLOUR_COST: Final = 0.5
+"""Difference of colours that is a person's own at most, over a wall's light and shadow, where other
+views alone have shown their clothes."""
+OTHER_CLOTHES: Final = 0.4
+"""The same where that view has."""
+COLOUR_COST: Final = 0.6
 """Cost of such a difference."""
 
 
@@ -47,9 +50,10 @@ def cost_of(camera: Camera, view: int, life: Life, seen: Observation, now_s: flo
         now_s: Capture time.
     """
     unlike = colour_distance(life.colours_in(view), seen.colours)
+    unlike /= OTHER_CLOTHES if life.has_colours_in(view) else UNLIKE
     unseen_s = life.unseen_s(now_s)
     is_away = unseen_s > AWAY_S
-    if is_away and unlike > UNLIKE:
+    if is_away and unlike > 1.0:
         return np.inf
     expected_m = life.expected_m(now_s)
     if expected_m is None:
@@ -59,7 +63,7 @@ def cost_of(camera: Camera, view: int, life: Life, seen: Observation, now_s: flo
     if not far < 1.0:
         return np.inf
     keeps = KEEPS * (life.tracks[view] == seen.track)
-    return max(0.0, 0.5 * far + AWAY * is_away + COLOUR_COST * min(unlike, UNLIKE) - keeps)
+    return max(0.0, 0.5 * far + AWAY * is_away + COLOUR_COST * min(unlike, 1.0) - keeps)
 
 
 def hidden_shares(camera: Camera, places_m: Sequence[Places | None]) -> Vector:
