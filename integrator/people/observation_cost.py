@@ -30,6 +30,8 @@ AWAY: Final = 0.3
 AWAY_S: Final = 0.5
 HIDDEN: Final = 0.4
 """Cost of a person all of whose joints are behind one who is nearer to the camera."""
+BEHIND_M: Final = 0.25
+"""By how much farther from the camera they are at least: two in one place may be one person."""
 UNLIKE: Final = 1.0
 """Difference of colours that is a person's own at most, over a wall's light and shadow, where other
 views alone have shown their clothes."""
@@ -77,7 +79,7 @@ def hidden_shares(camera: Camera, places_m: Sequence[Places | None]) -> Vector:
     shown = [None if each is None else _in_picture(camera, each) for each in places_m]
     shares = np.zeros(len(places_m))
     for (i, one), (_, other) in permutations(enumerate(shown), 2):
-        if one is None or other is None or not other[1] < one[1]:
+        if one is None or other is None or other[1] > one[1] - BEHIND_M:
             continue
         low, high = other[0].min(axis=0), other[0].max(axis=0)
         behind = ((one[0] > low) & (one[0] < high)).all(axis=1)
