@@ -181,7 +181,7 @@ def test_a_set_has_each_persons_takes_of_each_posture_all_of_one_seed(
         for number, take, posture in jobs
     ]
     assert written == [
-        (folder, person(6 + number), n, Filming(rig, 2 * 7919 + number, take + 2000), take)
+        (folder, person(6 + number), n, Filming(rig, 2 * 7919 + number, take + 2000), take, None)
         for n, (folder, (number, take, _)) in enumerate(zip(folders, jobs, strict=True), 1)
     ]
     assert told == [(n, 12) for n in range(1, 13)]
