@@ -10,6 +10,7 @@ from synth import write
 from synth.motion.crossing import BESIDE_M, crossing
 from synth.motion.on_spot import on_spot
 from synth.person.people import person
+from synth.picture.render import render_scene
 from synth.write import ClipSet, write_set
 
 
@@ -30,7 +31,7 @@ def test_a_set_of_crossings_has_both_in_the_pictures_and_the_first_in_the_truth(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     asked: list[Any] = []
-    real = write.render_scene
+    real = render_scene
 
     def rendered(parts: Any, *rest: Any, **others: Any) -> Any:
         short = [part._replace(motion=_cut(part.motion)) for part in parts]
