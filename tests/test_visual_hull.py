@@ -108,6 +108,20 @@ def test_outlines_without_a_common_place_are_left_alone() -> None:
     assert visual_hull.cleaned(ROLLED, alone) == (alone, False)
 
 
+def test_the_largest_piece_is_by_volume_times_height_and_reaches_ten_cells_into_one_view() -> None:
+    """A plate of 25 cells against a column of 7: 25 x 1 against 7 x 7; corners do not touch."""
+    full = np.full((30, 12, 30), -1, np.int8)
+    full[0:5, 0, 0:5] = 2
+    full[5, 1:8, 5] = 2
+    full[6:30, 4, 5] = 1
+    full[0:5, 5, 5] = 1
+    found = {tuple(cell) for cell in visual_hull._largest(full).tolist()}
+    column = {(5, up, 5) for up in range(1, 8)}
+    assert found == column | {(x, 4, 5) for x in range(6, 16)} | {(x, 5, 5) for x in range(5)}
+    assert not len(visual_hull._largest(np.ones((2, 2, 2), np.int8)))
+    assert len(visual_hull._largest(np.full((2, 2, 2), 2, np.int8))) == 8
+
+
 @pytest.mark.slow
 def test_a_rehearsal_compiles_what_a_doubtful_pose_needs() -> None:
     """In a process of its own: nothing is left to compile in the middle of a live run."""

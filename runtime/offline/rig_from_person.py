@@ -85,14 +85,14 @@ def by_person(
     It is unchanged where it has a rig, where the method uses no landmarks, where too little of a
     person is seen, and where the views' pictures differ in size.
     """
-    from calibration.person.many_calibration import calibrated_by_all
-
     of_files = all(view.frames for view in clip.views)
     of_one_size = len({view.size for view in clip.views}) == 1
     if clip.rig is not None or len(clip.views) < 2 or not (of_files and of_one_size):
         return Looked(clip)
     if not (method.landmarks and method.proposals):
         return Looked(clip)
+    from calibration.person.many_calibration import calibrated_by_all  # as long as all else
+
     seen = sightings_of(clip, settings, method, readers, sources)
     clocks = believed_clocks(clip, settings, seen)
     try:
