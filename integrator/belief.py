@@ -1,5 +1,6 @@
 """Whether a body is believed: landmarks in its pictures must agree with it."""
 
+import math
 from typing import Final
 
 import numpy as np
@@ -180,7 +181,8 @@ def _astray(joints_m: NDArray[np.float64], camera: Camera, found: Landmarks) -> 
     joints_px, seen_px = project(camera, joints_m), np.array(found.joints_px)
     if np.isnan(joints_px).any():  # the body is behind the camera that sees the person
         return np.inf
-    tall_px = max(float(np.linalg.norm(np.ptp(joints_px, axis=0))), 1.0)
+    across_px, up_px = (joints_px.max(axis=0) - joints_px.min(axis=0)).tolist()
+    tall_px = max(math.hypot(across_px, up_px), 1.0)
     sure = np.array(found.confidence) > SURE
     off_px = np.stack([joints_px, joints_px[OTHER_SIDE]])[:, sure] - seen_px[sure]
     off_px = np.sort(np.hypot(off_px[..., 0], off_px[..., 1]), axis=1)

@@ -8,8 +8,9 @@ from numpy.typing import NDArray
 from calibration.tracks import person_prior as prior
 from calibration.tracks.joint_tracks import LEAST_SURE, JointTrack, at_times
 from calibration.tracks.sight_lines import Numbers
-from calibration.tracks.view_relation import relation_of, terms_of
+from calibration.tracks.view_relation import Relation, relation_of, terms_of
 from common.body.body import OTHER_SIDE, Vector
+from common.compiled import compiled
 
 LEAST_SHARED: Final = 12
 """Fewest moments that both views must share: fewer fit any relation."""
@@ -21,7 +22,6 @@ EXCHANGE_COST: Final = 0.5
 """Log likelihood that exchanged sides must gain for a part."""
 ROUNDS: Final = 3
 """Number of rounds: each decides the exchanged sides again and weighs outliers less."""
-_IN_PART: Final = np.eye(3)[prior.PART_OF_JOINT]
 
 
 class Fit(NamedTuple):
@@ -77,15 +77,7 @@ def _fitted(first: JointTrack, second: JointTrack, late_s: float) -> Fit | None:
     both, paired = _paired(first, second, late_s)
     if both.sum() < LEAST_SHARED or not paired.weights[0].any():
         return None
-    sides = np.zeros(paired.terms.shape[1:3], np.bool_)
-    trust = np.ones(sides.shape)
-    for _ in range(ROUNDS):
-        weights = np.where(sides, paired.weights[1], paired.weights[0])
-        terms = np.where(sides[..., None], paired.terms[1], paired.terms[0])
-        relation = relation_of(terms.reshape(-1, terms.shape[-1]), (trust * weights).ravel())
-        off = (relation.off(paired.terms) / ERR) ** 2 / 2.0
-        sides = _sides(paired.weights * np.log1p(off))
-        trust = 1.0 / (1.0 + np.where(sides, off[1], off[0]))
+    sides, off = _in_rounds(paired.terms, paired.weights)
     costs, weights = np.zeros((2, len(both)))
     each = np.where(sides, paired.weights[1], paired.weights[0])
     costs[both] = (each * np.log1p(np.where(sides, off[1], off[0]))).sum(axis=1)
@@ -93,8 +85,47 @@ def _fitted(first: JointTrack, second: JointTrack, late_s: float) -> Fit | None:
     return Fit(late_s, costs, weights)
 
 
-def _sides(costs: Numbers) -> NDArray[np.bool_]:
-    """(n, 15) whose sides are exchanged, by the landmarks' costs either way (2, n, 15)."""
-    as_is, other = costs @ _IN_PART
-    exchanged = (other + EXCHANGE_COST < as_is) & (np.arange(3) != prior.TRUNK)
-    return exchanged[:, prior.PART_OF_JOINT]
+@compiled
+def _in_rounds(terms: Numbers, weights: Numbers) -> tuple[NDArray[np.bool_], Numbers]:
+    """(n, 15) whose sides are exchanged, and (2, n, 15) half the squared misses either way, in
+    units of ERR."""
+    _, moments, joints, count = terms.shape
+    sides, trust = np.zeros((moments, joints), np.bool_), np.ones((moments, joints))
+    off, chosen = np.empty(weights.shape), np.empty((moments, joints, count))
+    for _ in range(ROUNDS):
+        for n in range(moments):
+            for joint in range(joints):
+                way = int(sides[n, joint])
+                chosen[n, joint] = terms[way, n, joint]
+                trust[n, joint] *= weights[way, n, joint]
+        relation = relation_of(chosen.reshape(-1, count), trust.ravel())
+        _set_off(off, terms, relation)
+        _set_sides(sides, off, weights)
+        for n in range(moments):
+            for joint in range(joints):
+                trust[n, joint] = 1.0 / (1.0 + off[int(sides[n, joint]), n, joint])
+    return sides, off
+
+
+@compiled
+def _set_off(off: Numbers, terms: Numbers, relation: Relation) -> None:
+    for way in range(2):
+        for n in range(terms.shape[1]):
+            for joint in range(terms.shape[2]):
+                miss = 0.0
+                for k in range(terms.shape[3]):
+                    miss += (terms[way, n, joint, k] - relation.means[k]) * relation.weights[k]
+                off[way, n, joint] = (miss / ERR) ** 2 / 2.0
+
+
+@compiled
+def _set_sides(sides: NDArray[np.bool_], off: Numbers, weights: Numbers) -> None:
+    """Of each part but the trunk, by the landmarks' costs either way."""
+    for n in range(len(sides)):
+        costs = np.zeros((2, 3))
+        for way in range(2):
+            for joint, part in enumerate(prior.PART_OF_JOINT):
+                costs[way, part] += weights[way, n, joint] * np.log1p(off[way, n, joint])
+        for joint, part in enumerate(prior.PART_OF_JOINT):
+            exchanged = costs[1, part] + EXCHANGE_COST < costs[0, part]
+            sides[n, joint] = exchanged and part != prior.TRUNK

@@ -47,6 +47,7 @@ def terms_of(one: Numbers, other: Numbers) -> Numbers:
     return np.concatenate([one, other, flat], axis=-1)
 
 
+@compiled
 def relation_of(terms: Numbers, weights: Numbers) -> Relation:
     """The relation that points (n, 8) miss least, weighted (n,).
 
@@ -54,24 +55,42 @@ def relation_of(terms: Numbers, weights: Numbers) -> Relation:
     If the views' weights were free, a person who shows a line in one view would explain anything in
     the other; perspective changes heights a little.
     """
-    share = weights / weights.sum()
-    means = share @ terms
-    around = terms - means
-    spread = (around * share[:, None]).T @ around
-    mixed, near = spread[LINEAR:, :LINEAR], spread[LINEAR:, LINEAR:]
-    follow = -np.linalg.solve(near + NEARLY_FAR * np.eye(len(near)), mixed)
-    far = _least(spread[:LINEAR, :LINEAR] + mixed.T @ follow)
-    return Relation(np.concatenate([far, follow @ far]), means)
+    means, spread = _moments(terms, weights)
+    for term in range(len(means) - 1, LINEAR - 1, -1):  # each follows those before it
+        spread[term, term] += NEARLY_FAR
+        for i in range(term):
+            for j in range(term):
+                spread[i, j] -= spread[i, term] * spread[term, j] / spread[term, term]
+    found = np.zeros(len(means))
+    found[:LINEAR] = _least(spread)
+    for term in range(LINEAR, len(means)):
+        found[term] = -(spread[term] * found)[:term].sum() / spread[term, term]
+    return Relation(found, means)
 
 
+@compiled
+def _moments(terms: Numbers, weights: Numbers) -> tuple[Numbers, Numbers]:
+    """(8,) means of terms (n, 8), and (8, 8) their spread."""
+    count, shares = terms.shape[1], weights / weights.sum()
+    means, spread = np.zeros(count), np.zeros((count, count))
+    for i in range(count):
+        for n in range(len(terms)):
+            means[i] += shares[n] * terms[n, i]
+    for n in range(len(terms)):
+        for i in range(count):
+            around = shares[n] * (terms[n, i] - means[i])
+            for j in range(count):
+                spread[i, j] += around * (terms[n, j] - means[j])
+    return means, spread
+
+
+@compiled
 def _least(spread: Numbers) -> Numbers:
-    """(4,) weights of both views for which the quadratic form (4, 4) is least."""
+    """(4,) weights of both views for which the quadratic form of the first terms is least."""
     one_deg, other_deg, share = 0.0, 0.0, 0.0
     for finer in FINER:
-        ours, theirs, shares = (
-            at + finer * tried
-            for at, tried in ((one_deg, TURNS_DEG), (other_deg, TURNS_DEG), (share, SHARES))
-        )
+        ours, theirs = one_deg + finer * TURNS_DEG, other_deg + finer * TURNS_DEG
+        shares = share + finer * SHARES
         m, n, k = _least_of(spread, np.radians(ours), np.radians(theirs), np.exp(shares))
         one_deg, other_deg, share = ours[n], theirs[m], shares[k]
     return _weights(one_deg, other_deg, share)
@@ -101,9 +120,10 @@ def _least_of(
     return best
 
 
+@compiled
 def _weights(one_deg: float, other_deg: float, share: float) -> Numbers:
     """(4,) weights of a direction from down in either view, and a share."""
-    one, other = np.radians([one_deg, other_deg])
+    one, other = np.radians(one_deg), np.radians(other_deg)
     ours = np.exp(share / 2.0)
     theirs = -1.0 / ours
     return np.array(

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import JOINT_NAMES, OTHER_SIDE, Vector
+from common.body.extremities import cross
 from common.body.observation import Observation
 from common.rig.camera import Camera, Rig, arrays_of, centre, rays
 from integrator.proposal.silhouette_window import (
@@ -137,8 +138,8 @@ def _on_plane(seen: NDArray[np.float64], forward: Vector) -> NDArray[np.float64]
     flat = float(np.linalg.norm(back))
     if flat < STEEPEST:
         return None
-    right = np.cross(UP, back / flat)
-    across = np.stack([seen @ right, seen @ np.cross(right, forward)], axis=1)
+    right = cross(UP, back / flat)
+    across = np.stack([seen @ right, seen @ cross(right, forward)], axis=1)
     return np.asarray(across / np.maximum(seen @ forward, ASLANT)[:, None])
 
 

@@ -1,5 +1,6 @@
 """What the outputs of the network of landmarks mean: joints in a window, and how sure they are."""
 
+import math
 from pathlib import Path
 from typing import Final, NamedTuple
 
@@ -7,14 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import Floats, Vector
-from common.compiled import compiled
+from common.compiled import KERNEL, compiled
 from viewer.landmarks.landmark_looks import BINS, CELLS, SHIPPED, seen, seen_twice
 from viewer.landmarks.landmark_window import PLANES, SIDE, Planes
 
 FARTHEST: Final = 0.8
 """Largest distance of a peak from the middle of its highest cell, cells."""
-DEEP: Final = 16.0
-"""Distance below the highest logit from which a cell is left out: all cells of a map together would
+LEAST: Final = np.float32(math.exp(-16.0))
+"""Share of a cell, the highest 1, below which it is left out: all cells of a map together would
 add a thousandth."""
 APART: Final = 4
 """Distance of a map's second peak from its highest, down or across, cells: it is larger than
@@ -83,48 +84,48 @@ def _peaks(maps: Floats | NDArray[np.float32]) -> tuple[Floats, Floats]:
     Between cells a peak is that of the bell through the three sums of cells about the highest:
     maps are taught to be bells, and a mean over few cells would lean to the middle one.
     """
+    flat, every = maps.reshape(len(maps), -1), np.arange(len(maps))
+    highest = flat.argmax(axis=1)
+    shares = np.exp(flat - flat[every, highest, None])  # all at once takes a tenth of one by one
+    apart, totals = shares.copy(), np.empty(len(maps))
+    _leave_out(shares.reshape(maps.shape), apart.reshape(maps.shape), highest, totals)
+    cells = np.stack([highest, apart.argmax(axis=1)], axis=1)
     joints, about = np.empty((len(maps), 2, 2)), np.empty((len(maps), 2))
-    _fill_peaks(maps, joints, about)
-    return joints, about
+    _fill_peaks(shares.reshape(maps.shape), cells, joints, about)
+    return joints, about / totals[:, None]
+
+
+@KERNEL
+def _leave_out(
+    shares: NDArray[np.float32], apart: NDArray[np.float32], highest: NDArray[np.intp], out: Vector
+) -> None:
+    """Leave out cells (n, CELLS, CELLS) below LEAST, in `apart` those about the highest; `out` (n,)
+    gets the sums."""
+    for j in range(len(shares)):
+        total, own = 0.0, shares[j]
+        for i in range(CELLS):
+            for k in range(CELLS):
+                share = own[i, k] if own[i, k] >= LEAST else np.float32(0.0)
+                own[i, k] = share
+                total += float(share)
+        out[j] = total
+        row, column = divmod(highest[j], CELLS)
+        rows = slice(max(row - APART, 0), row + APART + 1)
+        apart[j, rows, max(column - APART, 0) : column + APART + 1] = -1.0
 
 
 @compiled
-def _fill_peaks(maps: Floats | NDArray[np.float32], joints: Floats, about: Floats) -> None:
-    shares = np.empty((CELLS, CELLS))
-    for j in range(len(maps)):
-        row, column = divmod(maps[j].argmax(), CELLS)
-        total = _set_shares(maps[j], maps[j, row, column], shares)
-        about[j, 0] = _peak(shares, row, column, joints[j, 0]) / total
-        row, column = _highest_apart(shares, row, column)
-        about[j, 1] = _peak(shares, row, column, joints[j, 1]) / total
+def _fill_peaks(
+    shares: NDArray[np.float32], cells: NDArray[np.intp], joints: Floats, about: Floats
+) -> None:
+    for j in range(len(shares)):
+        for n in range(2):
+            row, column = divmod(cells[j, n], CELLS)
+            about[j, n] = _peak(shares[j], row, column, joints[j, n])
 
 
 @compiled
-def _set_shares(logits: Floats | NDArray[np.float32], highest: float, shares: Floats) -> float:
-    """The shares of cells (CELLS, CELLS), 1 the highest; their sum."""
-    total = 0.0
-    for i in range(CELLS):
-        for k in range(CELLS):
-            below = logits[i, k] - highest
-            shares[i, k] = np.exp(below) if below >= -DEEP else 0.0
-            total += shares[i, k]
-    return total
-
-
-@compiled
-def _highest_apart(shares: Floats, row: int, column: int) -> tuple[int, int]:
-    """The cell with the largest share of those that are APART from another."""
-    best, at = -1.0, (0, 0)
-    for i in range(CELLS):
-        is_row_apart = abs(i - row) > APART
-        for k in range(CELLS):
-            if shares[i, k] > best and (is_row_apart or abs(k - column) > APART):
-                best, at = shares[i, k], (i, k)
-    return at
-
-
-@compiled
-def _peak(shares: Floats, row: int, column: int, place: Vector) -> float:
+def _peak(shares: Floats | NDArray[np.float32], row: int, column: int, place: Vector) -> float:
     """What lies about a cell; `place` (2,) gets where the bell about it has its peak."""
     near = 0.0
     rows, columns = np.full(3, 1e-9), np.full(3, 1e-9)

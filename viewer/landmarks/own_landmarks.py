@@ -46,7 +46,7 @@ MARGIN: Final = 0.06
 SHORT: Final = 0.1
 """A trunk shorter than this, in the longer side of what holds the joints, points to or from the
 camera."""
-_TRUNK: Final = [JOINT_NAMES.index(name) for name in ("pelvis", "neck")]
+_PELVIS, _NECK = JOINT_NAMES.index("pelvis"), JOINT_NAMES.index("neck")
 
 
 class LandmarkModel(NamedTuple):
@@ -247,7 +247,7 @@ def _about(joints_px: Places, confidence: tuple[float, ...]) -> Window | None:
     if counts.sum() < len(joints_px) // 2:
         return None
     sure = joints_px[counts]
-    turn_deg = _turn_deg(joints_px, sure) if counts[_TRUNK].all() else 0.0
+    turn_deg = _turn_deg(joints_px, sure) if counts[_PELVIS] and counts[_NECK] else 0.0
     return window_about(sure, turn_deg, MARGIN)
 
 
@@ -258,9 +258,8 @@ def _turn_deg(joints_px: Places, sure: Places) -> float:
         joints_px: (15, 2)
         sure: (n, 2) those that count.
     """
-    pelvis, neck = joints_px[_TRUNK]
-    across, down = (neck - pelvis).tolist()
-    if math.hypot(across, down) < SHORT * float(np.ptp(sure, axis=0).max()):
+    across, down = (joints_px[_NECK] - joints_px[_PELVIS]).tolist()
+    if math.hypot(across, down) < SHORT * float((sure.max(axis=0) - sure.min(axis=0)).max()):
         return 0.0
     return lean_deg(across, down)
 

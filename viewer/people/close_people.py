@@ -53,6 +53,8 @@ def cheapest(costs: Sequence[Sequence[float]], most: float) -> list[int | None]:
 
 def are_close(people: People) -> bool:
     """Whether any known person reaches into another's window."""
+    if len(people.tracks) < 2:
+        return False
     windows = [(each.landmarks, window_of_joints(each.landmarks)) for each in people.tracks]
     return any(
         window is not None and is_in(window, other)
@@ -111,6 +113,8 @@ def beside(
         people: By any numbers.
         window: The person's; None: about the joints.
     """
+    if len(people) < 2:
+        return None
     own = people[number]
     window = window or window_of_joints(own)
     if window is None:

@@ -218,7 +218,8 @@ def _apart(first: Landmarks, second: Landmarks) -> float:
 
 def _size(landmarks: Landmarks) -> float:
     """Longer side of what holds the joints that count, pixels."""
-    return max(1.0, float(np.ptp(corners_of(landmarks), axis=0).max()))
+    low, high = corners_of(landmarks)
+    return max(1.0, float((high - low).max()))
 
 
 def corners_of(landmarks: Landmarks) -> Floats:

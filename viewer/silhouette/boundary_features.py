@@ -1,5 +1,6 @@
 """Features of pixels around a first guess's contour that distinguish body and background."""
 
+from functools import lru_cache
 from typing import Final
 
 import cv2
@@ -62,6 +63,7 @@ def features_of(
     return places, features
 
 
+@lru_cache(maxsize=8)
 def _square(far: int) -> Bytes:
     return np.ones((2 * far + 1,) * 2, np.uint8)
 
