@@ -142,10 +142,12 @@ def performance(event: Event, onset: tuple[int, float], end: tuple[int, float]) 
     )
 
 
-def words(one: Performance) -> str:
-    """One line about a performance."""
+def words(one: Performance, person: int = 0) -> str:
+    """One line about a performance, of one of several people with their number."""
+    whose = f"person {person}, " if person else ""
     times = f", {one.times} times" if one.times > 1 else ""
-    return f"{one.onset_s:.1f} to {one.end_s:.1f} s: {one.name}{times} ({one.posterior:.0%} sure)"
+    when = f"{one.onset_s:.1f} to {one.end_s:.1f} s"
+    return f"{whose}{when}: {one.name}{times} ({one.posterior:.0%} sure)"
 
 
 def row_of(body: Body) -> NDArray[np.float64] | None:
@@ -173,12 +175,12 @@ def run(
                 ahead_s = clock.asked(bus).offset_s
             state, posture = everyone.step(state, body, step)
             bus.publish(posture)
-            told = words(posture.event) if posture.event else told
+            told = words(posture.event, posture.person) if posture.event else told
             pace.done(body.clock_s - ahead_s, time.monotonic())
             heart.beat("running", told, **_lost(bodies))
     for last in everyone.finished(state, finish):
         bus.publish(last)
-        told = words(last.event) if last.event else told
+        told = words(last.event, last.person) if last.event else told
     heart.beat("ended", told, **_lost(bodies))
 
 

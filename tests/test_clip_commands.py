@@ -101,6 +101,8 @@ def test_scenes_are_made_as_they_are_asked_for(monkeypatch: pytest.MonkeyPatch) 
     assert made.last[1].lasts_s == 0.0, "refused later, not taken for none"
     typed(synth, "--out", "x", "--people", 1)
     assert made.last[1] == SceneSet(1, 10.0, 1, 0, 2, opening=True)
+    typed(synth, "--out", "x", "--people", 2, "--posture", "squat", "--posture", "kick_left_side")
+    assert made.last[1] == SceneSet(2, postures=("squat", "kick_left_side"))
 
 
 @pytest.mark.parametrize(
@@ -108,7 +110,6 @@ def test_scenes_are_made_as_they_are_asked_for(monkeypatch: pytest.MonkeyPatch) 
     [
         (["--people", 2, "--motion", "free"], "--motion is of clips of one person: leave it or"),
         (["--people", 2, "--performers", 2], "--performers is of clips of one person"),
-        (["--people", 2, "--posture", "squat"], "--posture is of clips of one person"),
         (["--seconds", 9], "--seconds needs --people: other clips have their own"),
         (["--alone"], "--alone needs --people: other clips have their own"),
         (["--no-opening"], "--no-opening needs --people: other clips have their own"),

@@ -8,6 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from rich.console import Console
 
@@ -17,6 +18,10 @@ from visiting import visited
 
 from common.config.settings import Settings
 from common.rig.rig_file import load_rig
+from recognizer import __main__ as recogniser
+from recognizer import everyone
+from recognizer.__main__ import model_of
+from runtime.offline.lockstep import Decoders, track_clip
 from runtime.store.other_run import OtherRun
 from synth.motion.motions import performance
 from tritrack import demo
@@ -43,9 +48,68 @@ def test_a_demo_takes_the_place_of_demos_alone(tmp_path: Path) -> None:
     demo.refuse_other_than_demo(tmp_path)
     holds(f"/tmp/tritrack-demo-1/s90001_t1_05_{demo.POSTURE}/cam1.avi")
     demo.refuse_other_than_demo(tmp_path)
+    holds("/tmp/tritrack-demo-1/people2_s90001_t1/cam1.avi")
+    demo.refuse_other_than_demo(tmp_path)
     holds("/films/monday/cam1.avi")
     with pytest.raises(OtherRun, match=r"monday.*--force"):
         demo.refuse_other_than_demo(tmp_path)
+
+
+def test_a_demo_of_two_names_the_posture_of_each(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Which number has whom is not asked; one who is not named, or named as the other, is."""
+    asked: list[Any] = []
+    facts: dict[str, Any] = {"posture": "squat"}
+
+    def live(settings: Settings, *_: object) -> dict[str, Any]:
+        asked.append(settings)
+        return facts
+
+    monkeypatch.setattr(demo, "write_scenes", lambda folder, *_: [folder / "people2"])
+    monkeypatch.setattr(demo, "live", live)
+    said = Console(file=io.StringIO(), width=200)
+    facts["postures"] = {"1": "squat", "4": "raise_right_lateral"}
+    assert demo.run_demo(tmp_path, False, said, people=2) == facts
+    assert (asked[0].people, Path(asked[0].clip).name) == ("all", "people2")
+    assert isinstance(said.file, io.StringIO)
+    assert said.file.getvalue().startswith(
+        "making 2 people who perform raise_right_lateral and squat ...\n"
+    )
+    performed = "performed raise_right_lateral and squat, named"
+    for named, told in (
+        ({"1": "squat"}, "squat"),
+        ({"1": "squat", "2": "squat"}, "squat and squat"),
+        ({"1": "squat", "2": "raise_right_lateral", "3": "squat"}, "raise_right_lateral and squat"),
+    ):
+        facts["postures"] = named
+        with pytest.raises(demo.DemoFailed, match=f"^{performed} {told}"):
+            demo.run_demo(tmp_path, False, said, people=2)
+
+
+@pytest.mark.slow
+def test_of_two_in_the_demo_each_ones_posture_is_recognised(tmp_path: Path) -> None:
+    """In lock-step, as a live run on a machine that keeps up is equal to it; who is who is told by
+    where the truth has them."""
+    clip = demo.made_scene(tmp_path, 2, 2)
+    settings = Settings(clip=str(clip), people="all")
+    with Decoders() as decoders:
+        tracked = track_clip(settings, decoders)
+    state = everyone.init(recogniser.init(model_of(settings), settings.recognizer.window_frames))
+    named: dict[int, list[str]] = {}
+    places: dict[int, float] = {}
+    for body in tracked.bodies:
+        state, posture = everyone.step(state, body, recogniser.step)
+        if posture.event:
+            named.setdefault(body.person, []).append(posture.event.name)
+        if body.joints_m:
+            places[body.person] = body.joints_m[0][0]
+    with np.load(clip / "truth.npz") as truth:
+        last = truth["joints3d"][-2:, 0, 0]
+    for number, performed in enumerate(demo.POSTURES[:2]):
+        nearest = min(places, key=lambda person: abs(places[person] - last[number]))
+        assert named.pop(nearest) == [performed] * len(named.get(nearest, [performed]))
+    assert not named
 
 
 @pytest.mark.slow

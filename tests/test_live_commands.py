@@ -65,6 +65,11 @@ def test_a_live_run_is_that_of_its_settings_and_what_is_typed(given: Called, ran
     assert (out, name, record) == (live_commands.LAST, "", False)
     assert settings.page.wait is Settings().page.wait
     assert "posture: none; written to runs/live" in said.output
+    assert settings.people == 1
+    ran.answer = {"posture": "squat", "postures": {"1": "kick_left_side", "2": "squat"}}
+    said = typed(live, "somewhere", "--people", "all")
+    assert ran.last[0].people == "all"
+    assert "postures: kick_left_side by 1, squat by 2; written to runs/live" in said.output
 
 
 def test_another_run_is_written_over_only_where_the_last_one_always_is(
@@ -95,7 +100,9 @@ def test_the_demo_is_shown_unless_it_is_told_not_to(
     assert refused.last == (Path("new"),)
     assert "posture: squat; written to new" in said.output
     typed(demo, "--force", "--cameras", 3)
-    assert (done.last[:2], done.last[3:]) == ((Path("runs/demo"), True), (True, 3))
+    assert (done.last[:2], done.last[3:]) == ((Path("runs/demo"), True), (True, 3, 1))
+    typed(demo, "--force", "--people", 2)
+    assert done.last[3:] == (True, 2, 2)
     assert len(refused.given) == 1
 
 

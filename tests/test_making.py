@@ -8,6 +8,7 @@ import pytest
 from rich.console import Console
 
 from common.config.part_settings import SettingsError
+from synth.scene.scene_clips import SceneSet
 from synth.write import ClipSet, SynthError
 from tritrack.making import make_clips
 
@@ -58,6 +59,18 @@ def test_silly_values_are_refused_before_anything_is_written(
 ) -> None:
     with pytest.raises(SettingsError, match=error):
         made(tmp_path / "out", **changes)
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("posture", "error"),
+    [("dance", "unknown posture 'dance'"), ("walk_toward", "walk_toward leads away, and people")],
+)
+def test_people_of_a_scene_perform_known_postures_at_their_place(
+    tmp_path: Path, posture: str, error: str
+) -> None:
+    with pytest.raises(SettingsError, match=error):
+        make_clips(tmp_path / "out", SceneSet(2, postures=("squat", posture)), "64x48", QUIET)
     assert not (tmp_path / "out").exists()
 
 

@@ -135,3 +135,24 @@ def test_every_sample_names_its_room_and_ends_in_its_unit() -> None:
 
 def test_a_run_of_which_nothing_was_heard_has_no_samples() -> None:
     assert told([]).samples == []
+
+
+def test_each_of_several_people_has_bodies_of_their_own_and_who_is_there_is_counted() -> None:
+    """A run that follows one person has neither; who was not believed for half a second is gone."""
+    bodies = [
+        msgspec.structs.replace(BODY, person=person, captured_s=captured_s, status=status)
+        for person, captured_s, status in (
+            (1, 0.0, "tracking"),
+            (2, 0.0, "measuring"),
+            (1, 0.4, "tracking"),
+            (2, 0.4, "lost"),
+            (1, 0.6, "tracking"),
+        )
+    ]
+    found = told(bodies)
+    assert found.value("tritrack_person_bodies_total", person="1", status="tracking") == 3
+    assert found.value("tritrack_person_bodies_total", person="2", status="lost") == 1
+    assert found.value("tritrack_bodies_total", status="tracking") == 3, "of all people"
+    assert found.value("tritrack_people") == 1
+    assert told(bodies[:4]).value("tritrack_people") == 2
+    assert not {"tritrack_people", "tritrack_person_bodies"} & set(told(SAID).families)

@@ -69,6 +69,25 @@ def test_people_are_never_closer_than_allowed(scenes: list[Scene]) -> None:
     assert max(nearest) > 1.2
 
 
+@pytest.mark.parametrize("seed", [3, 4])
+def test_who_is_given_postures_performs_their_own_at_the_same_time_again_and_again(
+    seed: int,
+) -> None:
+    """At the place of their T-pose: three people, two postures in turn."""
+    given = ("squat", "raise_both_lateral")
+    rig = rig_around((64, 48), 2, seed)
+    one = scene(SceneSeed(3, 10.0, seed, 1, seed, postures=given), rig, FPS)
+    acts = [part.motion.acts for part in one.parts]
+    assert [{act.name for act in each} for each in acts] == [{given[0]}, {given[1]}, {given[0]}]
+    assert [[act[1:] for act in each] for each in acts] == [[act[1:] for act in acts[0]]] * 3
+    assert len(acts[0]) == 3
+    for part in one.parts:
+        there = part.motion.root_m[part.motion.present][:, [0, 2]]
+        assert np.linalg.norm(there - there[0], axis=1).max() < 0.3
+        squats = part.motion.acts[0].name == "squat"
+        assert (np.nanmin(part.motion.root_m[:, 1]) < 0.75) == squats
+
+
 def test_bodies_that_collide_are_refused_unless_they_touch_on_purpose(scenes: list[Scene]) -> None:
     motion = scenes[0].parts[0].motion
     always = np.ones(len(motion.phase), np.bool_)

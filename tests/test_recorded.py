@@ -104,6 +104,14 @@ def test_a_performance_is_named_by_the_last_window_that_had_a_name() -> None:
     assert told.posture == "kick_left_side"
 
 
+def test_of_several_people_each_has_the_last_name_of_their_own() -> None:
+    told = SoFar()
+    for person, name in ((1, "squat"), (2, "kick_left_side"), (1, ""), (0, "squat"), (2, "squat")):
+        posture = Posture(frame=0, captured_s=0.0, clock_s=0.0, name=name, person=person)
+        told.take([], [posture])
+    assert told.postures == {1: "squat", 2: "squat"}
+
+
 def test_what_is_told_so_far_reads_no_body_again(monkeypatch: pytest.MonkeyPatch) -> None:
     """So that a supervisor of an hours-long run stands still for none of its answers."""
     told = SoFar([body(0), body(1)])

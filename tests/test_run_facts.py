@@ -58,6 +58,16 @@ def test_a_summary_tells_each_process_each_warning_once_and_the_rig_of_the_perso
     assert not viewer.keys() & {"protocol", "process", "detail"}
 
 
+def test_a_summary_tells_the_posture_of_each_of_several_people() -> None:
+    said = [
+        Posture(frame=0, captured_s=0.0, clock_s=0.0, name=name, person=person)
+        for person, name in ((2, "kick_left_side"), (1, "squat"))
+    ]
+    facts = facts_of(nothing_heard(), CLIP, 1.0, SoFar([], said))
+    assert facts["postures"] == {"1": "squat", "2": "kick_left_side"}
+    assert "postures" not in facts_of(nothing_heard(), CLIP, 1.0, SoFar())
+
+
 def test_a_rig_that_the_person_did_not_tell_is_no_calibration_of_the_run() -> None:
     heard = nothing_heard()
     facts = facts_of(heard, CLIP, 1.0, SoFar())

@@ -1,5 +1,6 @@
 """The figures of a run, step by step: what was said in, counts and ages out."""
 
+import msgspec
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -45,6 +46,14 @@ def test_each_body_is_counted_in_one_class(took_s: list[float]) -> None:
 def test_bodies_are_counted_by_status() -> None:
     figures = after(body(99.0), body(99.0, "lost"), body(99.0))
     assert figures.bodies == {"tracking": 2, "lost": 1}
+
+
+def test_a_long_runs_figures_are_of_the_people_whose_bodies_came_last() -> None:
+    """Who comes in again has a new number: of a hundred, those of the last eight are kept."""
+    told = [msgspec.structs.replace(body(99.0), person=n) for n in range(1, 101)]
+    figures = after(*told, msgspec.structs.replace(body(99.0), person=95))
+    assert [*figures.people] == [93, 94, 96, 97, 98, 99, 100, 95]
+    assert figures.people[95].bodies == {"tracking": 2}
 
 
 def test_a_process_whose_counts_begin_anew_is_another_one() -> None:

@@ -63,6 +63,20 @@ def arrays(run: Path) -> dict[str, np.ndarray]:
         return {name: file[name] for name in file.files}
 
 
+def test_a_summary_counts_instants_as_well_as_bodies_and_the_bodies_of_each_person() -> None:
+    """Four instants: nobody; two people believed; one of two; neither."""
+    status = [(0, 0, "empty"), (1, 1, "tracking"), (1, 2, "measuring"), (2, 1, "lost")]
+    status += [(2, 2, "tracking"), (3, 1, "predicted"), (3, 2, "lost")]
+    told = summary_of([body(at, person=who, status=how) for at, who, how in status], Settings(), {})
+    assert (told["frames"], told["instants"], told["instants_believed"]) == (7, 4, 2)
+    assert told["people"] == {
+        "1": {"frames": 3, "believed": 1},
+        "2": {"frames": 3, "believed": 2},
+    }
+    alone = summary_of([body(0), body(1, status="tracking")], Settings(), {})
+    assert (alone["instants"], alone["instants_believed"], "people" in alone) == (2, 1, False)
+
+
 def test_a_run_that_is_written_anew_removes_what_was_exported_of_the_one_before(
     tmp_path: Path,
 ) -> None:

@@ -14,7 +14,7 @@ from local_bus import LocalBus
 from common.body.body import ANGLES_IN_POSE, JOINT_NAMES, POSE_NAMES
 from common.bus.control_messages import ClockAnswer, ClockQuestion, Pulse
 from common.bus.inbox import Inbox
-from common.bus.messages import Body, Posture
+from common.bus.messages import Body, Performance, Posture
 from common.bus.rate import Pace
 from common.config.settings import Settings
 from recognizer import __main__ as recognizer_process
@@ -314,3 +314,11 @@ def test_what_a_step_runs_is_loaded_by_turning_bodies_long_enough_to_be_named(
     assert len(given) == len(network) == spotting.NAMED_FROM_FRAMES + 2
     assert [float(row[0]) for row in given[:3]] == [0.0, 9.0, 18.0]
     assert all((row == row[0]).all() for row in network)
+
+
+def test_a_line_about_a_performance_says_whose_it_is_where_there_are_several() -> None:
+    one = Performance(
+        name="squat", onset=30, end=90, onset_s=2.0, end_s=6.0, posterior=0.93, times=2
+    )
+    assert words(one) == "2.0 to 6.0 s: squat, 2 times (93% sure)"
+    assert words(one, 3) == "person 3, 2.0 to 6.0 s: squat, 2 times (93% sure)"

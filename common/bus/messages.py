@@ -12,6 +12,8 @@ PROTOCOL: Final = 12
 
 MOST_VIEWS: Final = 8
 """Upper bound of the number of cameras in a rig."""
+MOST_PEOPLE: Final = 5
+"""Upper bound of the number of people in a scene, and of those whom a run follows."""
 ViewerNumber = Annotated[int, msgspec.Meta(ge=1, le=MOST_VIEWS)]
 """Index of a camera in the rig's order, from 1."""
 Status = Literal["empty", "measuring", "tracking", "predicted", "lost"]

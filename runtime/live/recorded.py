@@ -75,6 +75,8 @@ class SoFar:
         """The moves of cameras so far."""
         self.posture = ""
         """For a whole clip: the last name given, by a window that saw most of it."""
+        self.postures: dict[int, str] = {}
+        """The same by the number of each of several people."""
         self.instants = 0
         """Number of bodies."""
         self.with_person = 0
@@ -89,3 +91,5 @@ class SoFar:
             self.with_person += body.status != "empty"
         for posture in postures:
             self.posture = posture.name or self.posture
+            if posture.person and posture.name:
+                self.postures[posture.person] = posture.name

@@ -30,6 +30,7 @@ def facts_of(heard: Heard, clip: Clip, seconds: float, so_far: SoFar) -> Facts:
         **_calibration(heard),
         **facts_of_moves(so_far.moves),
         "posture": so_far.posture,
+        **_postures(so_far),
         "warnings": list(dict.fromkeys(warnings)),
         "processes": {
             name: {
@@ -40,6 +41,12 @@ def facts_of(heard: Heard, clip: Clip, seconds: float, so_far: SoFar) -> Facts:
             for name, pulse in sorted(heard.pulses.items())
         },
     }
+
+
+def _postures(so_far: SoFar) -> Facts:
+    """By number of each of several people, as JSON has it."""
+    named = {str(person): name for person, name in sorted(so_far.postures.items())}
+    return {"postures": named} if named else {}
 
 
 def note_lost(heard: Heard) -> None:

@@ -11,7 +11,7 @@ from prometheus_client.core import (
     Metric,
 )
 
-from runtime.outside.run_figures import BUCKETS_S, PartFigures, RunFigures
+from runtime.outside.run_figures import BUCKETS_S, PartFigures, RunFigures, there
 
 COUNTS: Final = (
     ("frames", "frames", "Frames that a process worked on."),
@@ -46,6 +46,7 @@ def families(rooms: Mapping[str, RunFigures], now_s: float) -> Iterator[Metric]:
     yield from _states(parts, now_s)
     yield _latencies(rooms)
     yield from _bodies(rooms)
+    yield from _people({room: own for room, own in rooms.items() if own.people})
     yield _names(rooms)
 
 
@@ -124,6 +125,26 @@ def _latencies(rooms: Mapping[str, RunFigures]) -> Metric:
             buckets = list(zip(ends, accumulate(latency.counts), strict=True))
             family.add_metric((room, part), buckets, latency.sum_s)
     return family
+
+
+def _people(rooms: Mapping[str, RunFigures]) -> Iterator[Metric]:
+    """Of runs that follow several people; nothing where there is none."""
+    if not rooms:
+        return
+    bodies = CounterMetricFamily(
+        "tritrack_person_bodies",
+        "Bodies of each person by status, of the last 8 people.",
+        labels=("room", "person", "status"),
+    )
+    people = GaugeMetricFamily(
+        "tritrack_people", "People with a believed body now.", labels=("room",)
+    )
+    for room, figures in rooms.items():
+        people.add_metric((room,), there(figures))
+        for number, person in figures.people.items():
+            for status, count in person.bodies.items():
+                bodies.add_metric((room, str(number), status), count)
+    yield from (bodies, people)
 
 
 def _bodies(rooms: Mapping[str, RunFigures]) -> Iterator[Metric]:

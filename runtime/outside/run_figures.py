@@ -14,6 +14,13 @@ BUCKETS_S: Final = (
 )
 """Upper bounds of the latency classes, seconds; 66.7 ms is a frame at the paper's rate (P1)."""
 
+MOST: Final = 8
+"""Number of people who have figures, so that a long run's do not grow: each new person has another
+number."""
+BELIEVED: Final = ("measuring", "tracking")
+THERE_S: Final = 0.5
+"""Time since their last believed body for which a person counts as there, seconds."""
+
 Told = Body | Posture | Pulse | Cameras | Alive
 """The messages that the figures are derived from."""
 
@@ -39,12 +46,23 @@ class Latency(NamedTuple):
     sum_s: float = 0.0
 
 
+class PersonFigures(NamedTuple):
+    """The figures of one of several people."""
+
+    bodies: Mapping[str, int] = {}
+    """Number of their bodies of each status."""
+    believed_s: float | None = None
+    """Capture time of their last believed body."""
+
+
 class RunFigures(NamedTuple):
     """The figures of a run."""
 
     parts: Mapping[str, PartFigures] = {}
     bodies: Mapping[str, int] = {}
     """Number of bodies of each status."""
+    people: Mapping[int, PersonFigures] = {}
+    """By number, of several people: of those whose body came last, the last one last."""
     body: Body | None = None
     """The newest body."""
     body_s: float | None = None
@@ -66,7 +84,8 @@ def step(figures: RunFigures, told: Told, now_s: float) -> RunFigures:
         case Body():
             bodies = {**figures.bodies, told.status: figures.bodies.get(told.status, 0) + 1}
             heard = _spoke(figures, "integrator", told.clock_s, now_s)
-            return heard._replace(bodies=bodies, body=told, body_s=now_s)
+            people = _with_person(figures.people, told)
+            return heard._replace(bodies=bodies, people=people, body=told, body_s=now_s)
         case Posture():
             return _spoke(figures, "recognizer", told.clock_s, now_s)
         case Pulse():
@@ -76,6 +95,27 @@ def step(figures: RunFigures, told: Told, now_s: float) -> RunFigures:
         case Alive():
             part = figures.parts.get(told.name, PartFigures())
             return _with_part(figures, told.name, part._replace(there=told.alive))
+
+
+def there(figures: RunFigures) -> int:
+    """Number of people with a believed body now, of several."""
+    if figures.body is None:
+        return 0
+    since_s = figures.body.captured_s - THERE_S
+    last_s = [each.believed_s for each in figures.people.values()]
+    return sum(at_s is not None and at_s >= since_s for at_s in last_s)
+
+
+def _with_person(people: Mapping[int, PersonFigures], body: Body) -> Mapping[int, PersonFigures]:
+    """With one more body; that of a run which follows one person, or of no person, has number 0."""
+    if not body.person:
+        return people
+    own = people.get(body.person, PersonFigures())
+    bodies = {**own.bodies, body.status: own.bodies.get(body.status, 0) + 1}
+    believed_s = body.captured_s if body.status in BELIEVED else own.believed_s
+    others = {number: each for number, each in people.items() if number != body.person}
+    kept = dict([*others.items()][-MOST + 1 :])
+    return {**kept, body.person: PersonFigures(bodies, believed_s)}
 
 
 def _beaten(figures: RunFigures, pulse: Pulse, now_s: float) -> PartFigures:

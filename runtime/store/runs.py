@@ -167,22 +167,68 @@ def _share(belief: float, seen: int) -> float | None:
     return round(belief / seen, 4) if seen else None
 
 
+class _Person:
+    """What is counted of one of several people."""
+
+    def __init__(self) -> None:
+        self.frames = self.believed = 0
+
+    def add(self, body: Body) -> None:
+        self.frames += 1
+        self.believed += body.status in BELIEVED
+
+
+class _Counts:
+    """What is counted of a run's bodies, one after the other."""
+
+    def __init__(self) -> None:
+        self.often: Counter[Status] = Counter()
+        self.belief = 0.0
+        self.matches: list[int] = []
+        self.people: dict[int, _Person] = {}
+        self.instants = self.believed_instants = 0
+        self.last: Body | None = None
+        self._is_believed = False
+
+    def add(self, body: Body) -> None:
+        """Count a body; those of an instant come in a row."""
+        self.often[body.status] += 1
+        self.belief += _belief(body)
+        if body.joints_m:
+            self.matches.append(body.matches)
+        if body.person:
+            self.people.setdefault(body.person, _Person()).add(body)
+        if self.last is None or body.captured_s != self.last.captured_s:
+            self.instants += 1
+            self._is_believed = False
+        if body.status in BELIEVED and not self._is_believed:
+            self._is_believed = True
+            self.believed_instants += 1
+        self.last = body
+
+    @property
+    def of_people(self) -> Facts:
+        """By number of each of several people."""
+        if not self.people:
+            return {}
+        each = {str(number): vars(one) for number, one in sorted(self.people.items())}
+        return {"people": each}
+
+
 def summary_of(bodies: Iterable[Body], settings: Settings, facts: Facts) -> Facts:
     """The summary of these bodies, with the given facts."""
-    often: Counter[Status] = Counter()
-    matches: list[int] = []
-    last: Body | None = None
-    belief = 0.0
-    for last in bodies:
-        often[last.status] += 1
-        belief += _belief(last)
-        if last.joints_m:
-            matches.append(last.matches)
+    counts = _Counts()
+    for body in bodies:
+        counts.add(body)
+    matches, last = counts.matches, counts.last
     return {
-        "frames": often.total(),
+        "frames": counts.often.total(),
         "frames_with_pose": len(matches),
-        "status": {status: often[status] for status in get_args(Status)},
-        **_belief_facts(often, belief),
+        "instants": counts.instants,
+        "instants_believed": counts.believed_instants,
+        "status": {status: counts.often[status] for status in get_args(Status)},
+        **counts.of_people,
+        **_belief_facts(counts.often, counts.belief),
         "matches_a_frame": round(float(np.mean(matches)), 1) if matches else 0.0,
         **facts,
         "bdp_m": None if last is None else msgspec.to_builtins(last.bdp),

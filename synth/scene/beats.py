@@ -1,6 +1,7 @@
 """The beats of a scene: who walks where, who does what, and who meets whom."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from itertools import cycle
 from typing import Final
 
 import numpy as np
@@ -44,6 +45,8 @@ ASIDE_M: Final = 0.18
 """Distance of each from the common line at which two right hands meet."""
 STEP_S, HELD_S, TURNED_S = 0.9, 2.6, 0.5
 """Durations of a step into an embrace, of a gesture together, and of a turn."""
+PAUSE_S: Final = 0.2
+"""Time after a performance."""
 NEAR_M: Final = 0.05
 """Distance of a place to which no walk is needed."""
 ROUND_DEG: Final = (170.0, 330.0)
@@ -102,7 +105,20 @@ def perform(plot: Plot, _ground: Ground, rng: Random) -> Plot:
             after = gestured(after, who, name, MOVES[name], MOTION_S)
         else:
             after = _idle(after, who, MOTION_S, rng)
-    return later(after, MOTION_S + 0.2)
+    return later(after, MOTION_S + PAUSE_S)
+
+
+def perform_each(plot: Plot, postures: Sequence[str]) -> Plot:
+    """Everybody performs a given posture at their place, once.
+
+    Args:
+        plot: Who is there.
+        postures: Of the first person, the second and so on; fewer are given in turn.
+    """
+    after = plot
+    for who, name in zip(plot.there, cycle(postures), strict=False):
+        after = gestured(after, who, name, MOVES[name], MOTION_S)
+    return later(after, MOTION_S + PAUSE_S)
 
 
 def hug(plot: Plot, ground: Ground, rng: Random) -> Plot:

@@ -6,20 +6,20 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from common.bus.messages import MOST_PEOPLE
 from common.rig.camera import Rig
 from synth.motion.motions import EMPTY, MOTION, Motion
 from synth.person.people import Person, person
 from synth.person.skeleton import JOINTS
 from synth.picture.actors import Part, Thing
 from synth.picture.render import room_of
-from synth.scene.beats import BEATS
+from synth.scene.beats import BEATS, perform_each
 from synth.scene.carried import carried
 from synth.scene.floor import Ground, ground, inside, way_out
 from synth.scene.plot import Clash, Contact, Plot, touching
 from synth.scene.script import Script, places
 from synth.scene.walking import OPENED_S, acted, opening_phase
 
-MOST_PEOPLE: Final = 5
 LEADS: Final = ("mingle", "orbit", "perform", "hug", "hand over", "leave")
 """First beats, in turn by take."""
 ALONE: Final = ("mingle", "perform", "leave")
@@ -50,6 +50,9 @@ class SceneSeed(NamedTuple):
     opening: bool = True
     """Whether it begins with the empty room and T-poses; False: people are there and move from
     the first frame."""
+    postures: tuple[str, ...] = ()
+    """What everybody performs again and again at their place, by person, in turn; empty: a random
+    plot."""
 
 
 class Scene(NamedTuple):
@@ -74,7 +77,7 @@ def scene(wanted: SceneSeed, rig: Rig, fps: float) -> Scene:
     Raises:
         ValueError: When the people do not find room before the cameras.
     """
-    people, _, seed, take, room_seed, _ = wanted
+    people, _, seed, take, room_seed, *_ = wanted
     place = ground(rig, room_of(room_seed, rig))
     cast = [person(100 * seed + MOST_PEOPLE * (take - 1) + n) for n in range(people)]
     for attempt in range(TRIES):
@@ -93,9 +96,11 @@ def _plotted(wanted: SceneSeed, place: Ground, rng: np.random.Generator) -> Plot
     Raises:
         Clash: When a beat does not work out.
     """
-    plot = _opened(wanted.people, place, rng)
+    plot = _opened(wanted, place, rng)
     if not wanted.opening:
         plot = plot._replace(now_s=0.0)
+    if wanted.postures:
+        return _performing(plot, wanted)
     leads = LEADS if wanted.people > 1 else ALONE
     lead = leads[(wanted.take - 1) % len(leads)]
     while plot.now_s < wanted.lasts_s:
@@ -104,6 +109,19 @@ def _plotted(wanted: SceneSeed, place: Ground, rng: np.random.Generator) -> Plot
             continue
         plot = _continued(plot, [lead, *rng.permutation(leads)], place, rng)
         lead = str(rng.choice([name for name in leads if name != lead]))
+    return plot
+
+
+def _performing(plot: Plot, wanted: SceneSeed) -> Plot:
+    """The plot in which everybody performs again and again.
+
+    Raises:
+        Clash: When people are missing.
+    """
+    if plot.out:
+        raise Clash("not everybody is there")
+    while plot.now_s < wanted.lasts_s:
+        plot = perform_each(plot, wanted.postures)
     return plot
 
 
@@ -121,12 +139,13 @@ def _continued(plot: Plot, names: list[str], place: Ground, rng: np.random.Gener
     raise Clash("no beat works out")
 
 
-def _opened(people: int, place: Ground, rng: np.random.Generator) -> Plot:
+def _opened(wanted: SceneSeed, place: Ground, rng: np.random.Generator) -> Plot:
     """Everybody in a row of their own for the T-pose, whose arms spread along the rows; who finds
     no row, and sometimes one more, comes in later."""
+    people, late_share = wanted.people, 0.0 if wanted.postures else LATE_SHARE
     depths_m = np.unique(place.opening_m[:, 1])
     rows = int(np.ptp(depths_m) / ROWS_M) + 1
-    early = min(rows, people - int(people > 1 and rng.random() < LATE_SHARE))
+    early = min(rows, people - int(people > 1 and rng.random() < late_share))
     spare_m = np.ptp(depths_m) - ROWS_M * (early - 1)
     at_m = depths_m[0] + ROWS_M * np.arange(early) + np.sort(rng.uniform(0.0, spare_m, early))
     starts = []

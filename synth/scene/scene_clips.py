@@ -8,6 +8,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from common.bus.messages import MOST_PEOPLE
 from common.npz_file import Arrays
 from common.rig.camera import Rig
 from synth.motion.motions import Motion
@@ -16,7 +17,7 @@ from synth.picture.random_rig import MOST_CAMERAS, rig_around, stood_back
 from synth.picture.render import render_scene, room_of
 from synth.scene.beats import CROWD
 from synth.scene.floor import inside
-from synth.scene.people_scene import MOST_PEOPLE, Scene, SceneSeed, scene
+from synth.scene.people_scene import Scene, SceneSeed, scene
 from synth.write import (
     FPS,
     ROOM_SEED,
@@ -60,6 +61,8 @@ class SceneSet(NamedTuple):
     alone: bool = False
     """Whether each person is also shown alone, in a clip of their own with the same motion, room
     and noise: what tracking loses by the others is the difference."""
+    postures: tuple[str, ...] = ()
+    """What everybody performs again and again, by person, in turn; empty: random plots."""
 
 
 def write_scenes(
@@ -90,9 +93,10 @@ def write_scenes(
     write_rig(out / "calibration.json", rig)
     folders = []
     for take in range(1, wanted.takes + 1):
-        folders.append(out / f"people{wanted.people}_s{wanted.seed:02d}_t{take}")
+        folders.append(out / scene_name(wanted.people, wanted.seed, take))
         room_seed = wanted.seed * ROOM_SEED + take
-        asked = SceneSeed(*wanted[:2], wanted.seed, take, room_seed, wanted.opening)
+        first = (*wanted[:2], wanted.seed, take, room_seed)
+        asked = SceneSeed(*first, wanted.opening, wanted.postures)
         made, filming = _made(asked, rig), Filming(rig, room_seed, take + 1000 * wanted.seed)
         _write_scene(folders[-1], made, filming, take)
         if wanted.alone:
@@ -100,6 +104,11 @@ def write_scenes(
         if progress is not None:
             progress(take, wanted.takes)
     return folders
+
+
+def scene_name(people: int, seed: int, take: int) -> str:
+    """Name of a scene's folder."""
+    return f"people{people}_s{seed:02d}_t{take}"
 
 
 def rig_of(wanted: SceneSet, size: tuple[int, int]) -> Rig:

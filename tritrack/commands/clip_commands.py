@@ -120,7 +120,8 @@ def synth(
         str, typer.Option(help="Picture size, WIDTHxHEIGHT.", callback=size_given)
     ] = "320x240",
     posture: Annotated[
-        list[str] | None, typer.Option(help="Only this posture; may be given again.")
+        list[str] | None,
+        typer.Option(help="Only this posture; may be given again. With --people, one for each."),
     ] = None,
     cameras: Annotated[
         int, typer.Option(help="How many, 1 to 8: the paper's two, then more around the person.")
@@ -146,11 +147,11 @@ def synth(
         some = (motion or "postures", performers or 1, takes, seed, tuple(posture or ()), cameras)
         wanted = ClipSet(*some, moving=bool(moving))
     else:
-        single = {"--motion": motion, "--posture": posture, "--performers": performers}
-        single |= {"--moving": moving}
+        single = {"--motion": motion, "--performers": performers, "--moving": moving}
         refuse_given(single, because="is of clips of one person: leave it or --people out")
         lasts_s = SCENE_S if seconds is None else seconds
-        wanted = SceneSet(people, lasts_s, takes, seed, cameras, opening, alone)
+        of_each = (opening, alone, tuple(posture or ()))
+        wanted = SceneSet(people, lasts_s, takes, seed, cameras, *of_each)
     made = make_clips(out, wanted, size, console)
     facts = {"clips": [str(folder) for folder in made]}
     tell(facts, json_wanted, f"{counted(len(made), 'clip')} written to {out}")

@@ -6,14 +6,24 @@ from typing import Annotated, Final, Literal
 import msgspec
 import typer
 
-from common.bus.messages import MOST_VIEWS
+from common.bus.messages import MOST_PEOPLE, MOST_VIEWS
 from common.config import config_file
 from common.config.part_settings import BusSettings, SettingsError
 from common.config.settings import Settings
+from common.npz_file import Facts
 from runtime.overrides import overridden
 from runtime.terminal import counted
 from tritrack.commands.command_output import JsonWanted, console, tell
-from tritrack.commands.options import Force, LandmarkSource, ModeName, Offset, Out, Record, Size
+from tritrack.commands.options import (
+    Force,
+    LandmarkSource,
+    ModeName,
+    Offset,
+    Out,
+    People,
+    Record,
+    Size,
+)
 from tritrack.extras import refuse_without
 
 Wait = Annotated[
@@ -29,16 +39,20 @@ def demo(
     page: Annotated[bool, typer.Option(help="Show it on the live page too.")] = True,
     wait: Wait = True,
     cameras: Annotated[
-        int, typer.Option(min=1, max=MOST_VIEWS, help="How many cameras look at the person.")
+        int, typer.Option(min=1, max=MOST_VIEWS, help="How many cameras look at the people.")
     ] = 2,
+    people: Annotated[
+        int, typer.Option(min=1, max=MOST_PEOPLE, help="How many, who perform different postures.")
+    ] = 1,
     force: Force = False,
     json_wanted: JsonWanted = False,
 ) -> None:
-    """Run the whole system on a synthetic person.
+    """Run the whole system on synthetic people.
 
-    Viewers, integrator, recognizer and page work as in a live run.
+    Viewers, integrator, recognizer and page work as in a live run. More than one person are
+    followed as by --people all.
 
-    Example: tritrack demo --cameras 3
+    Example: tritrack demo --people 2 --cameras 3
     """
     if page:
         refuse_without("page", "websockets")
@@ -46,8 +60,8 @@ def demo(
 
     if not force:
         refuse_other_than_demo(out)
-    facts = run_demo(out, page, console, wait, cameras)
-    tell(facts, json_wanted, f"posture: {facts['posture']}; written to {out}")
+    facts = run_demo(out, page, console, wait, cameras, people)
+    tell(facts, json_wanted, f"{_named(facts)}; written to {out}")
 
 
 def live(
@@ -56,6 +70,7 @@ def live(
     mode: ModeName = None,
     size: Size = None,
     landmarks: LandmarkSource = None,
+    people: People = None,
     offset: Offset = None,
     record: Record = False,
     wait: Wait = True,
@@ -73,13 +88,20 @@ def live(
 
     own = config_file.load(settings_file)
     refuse_no_source(own, settings_file)
-    given = overridden(own, mode, size, landmarks, offset)
+    given = overridden(own, mode, size, landmarks, offset, people=people)
     settings = waiting(given, wait)
     if not force:
         _refuse_other_than_last(out, settings)
     name = settings_file.stem if settings_file.is_file() else ""
     facts = run_live(settings, out, console, name, record)
-    tell(facts, json_wanted, f"posture: {facts['posture'] or 'none'}; written to {out}")
+    tell(facts, json_wanted, f"{_named(facts)}; written to {out}")
+
+
+def _named(facts: Facts) -> str:
+    """The posture that was named last, of several people each one's."""
+    if several := facts.get("postures"):
+        return "postures: " + ", ".join(f"{name} by {who}" for who, name in several.items())
+    return f"posture: {facts['posture'] or 'none'}"
 
 
 def _refuse_other_than_last(out: Path, settings: Settings) -> None:
