@@ -1,5 +1,6 @@
 """The floor of a scene: where people can stand in all pictures, and where they go out."""
 
+from itertools import combinations
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -80,6 +81,22 @@ def way_out(place: Ground, from_m: Floor) -> Floor:
         ways.append(out)
     free = (out for out in ways if _gap_m(from_m, out, place.eyes_m) >= CAMERA_M)
     return next(free, ways[0])
+
+
+def least_aside_m(place: Ground, places_m: Floor) -> float:
+    """Smallest distance of any of the places (n, 2) from the line between a camera and another of
+    them, farther away: less than half the width of a person hides who is behind."""
+    pairs = combinations(places_m, 2)
+    return min(
+        (_aside_m(one - eye, other - eye) for one, other in pairs for eye in place.eyes_m),
+        default=np.inf,
+    )
+
+
+def _aside_m(one_m: Floor, other_m: Floor) -> float:
+    """Distance of the nearer of two places from the line to the farther one, from the camera."""
+    farther_m = max(np.hypot(*one_m), np.hypot(*other_m))
+    return abs(float(one_m[0] * other_m[1] - one_m[1] * other_m[0])) / float(farther_m)
 
 
 def _gap_m(from_m: Floor, to_m: Floor, points_m: Floor) -> float:

@@ -15,9 +15,9 @@ from synth.picture.actors import Part, Thing
 from synth.picture.render import room_of
 from synth.scene.beats import BEATS, perform_each
 from synth.scene.carried import carried
-from synth.scene.floor import Ground, ground, inside, way_out
+from synth.scene.floor import Ground, ground, inside, least_aside_m, way_out
 from synth.scene.plot import Clash, Contact, Plot, touching
-from synth.scene.script import Script, places
+from synth.scene.script import Floor, Script, places
 from synth.scene.walking import OPENED_S, acted, opening_phase
 
 LEADS: Final = ("mingle", "orbit", "perform", "hug", "hand over", "leave")
@@ -35,6 +35,8 @@ CLEAR_M, TOUCHING_M = 0.12, 0.18
 TRUNK: Final = tuple(JOINTS.index(name) for name in ("pelvis", "navel", "neck"))
 TRIES: Final = 100
 """Number of scenes tried until bodies keep clear of each other."""
+PLACE_TRIES: Final = 50
+"""Number of placements of which the one is taken in which people hide each other least."""
 BEAT_TRIES: Final = 4
 """Number of tries of one beat until another is taken."""
 
@@ -141,8 +143,21 @@ def _continued(plot: Plot, names: list[str], place: Ground, rng: np.random.Gener
 
 def _opened(wanted: SceneSeed, place: Ground, rng: np.random.Generator) -> Plot:
     """Everybody in a row of their own for the T-pose, whose arms spread along the rows; who finds
-    no row, and sometimes one more, comes in later."""
-    people, late_share = wanted.people, 0.0 if wanted.postures else LATE_SHARE
+    no row, and sometimes one more, comes in later. Who performs again and again stays there, so
+    that they hide each other as little as can be."""
+    if not wanted.postures:
+        return _rowed(wanted.people, LATE_SHARE, place, rng)
+    found = [_rowed(wanted.people, 0.0, place, rng) for _ in range(PLACE_TRIES)]
+    return max(found, key=lambda plot: least_aside_m(place, _starts(plot)))
+
+
+def _starts(plot: Plot) -> Floor:
+    """(n, 2) first places of those who are there."""
+    return np.array([plot.scripts[who].start_m for who in plot.there])
+
+
+def _rowed(people: int, late_share: float, place: Ground, rng: np.random.Generator) -> Plot:
+    """Everybody in a random row; a share of the scenes lacks one person."""
     depths_m = np.unique(place.opening_m[:, 1])
     rows = int(np.ptp(depths_m) / ROWS_M) + 1
     early = min(rows, people - int(people > 1 and rng.random() < late_share))
