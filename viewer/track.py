@@ -23,9 +23,9 @@ from viewer.captured_frame import CapturedFrame
 from viewer.expected_body import expected_body
 from viewer.landmarks.person_mask import LandmarkResult, Shown
 from viewer.paper import pose_search
-from viewer.paper.measure import opening_measure
 from viewer.people.known_people import forgotten, of_one
 from viewer.people.observed_people import everyone
+from viewer.people.openings import with_opening, with_openings
 from viewer.room.silhouette_correction import corrected, is_trusted
 from viewer.silhouette import silhouette
 from viewer.silhouette.silhouette import Seen
@@ -208,9 +208,10 @@ def describe(state: State, view: View, mask: Mask, guide: Guide | None) -> tuple
     setup, search, person = state.setup, state.search, view.person
     if person is None:
         return state._replace(search=search._replace(found=None)), view
-    facing = search.vote if guide is None else guide.facing[setup.viewer - 1]
-    measure, refusal = opening_measure(mask, person, guide, facing)
-    person = msgspec.structs.replace(person, vote=search.vote, measure=measure, refusal=refusal)
+    view = with_person(view, msgspec.structs.replace(person, vote=search.vote))
+    is_one = setup.settings.people == 1
+    view = with_opening(view, mask, guide) if is_one else with_openings(view)
+    person = view.people[0]
     if setup.method.stick_lifting or (guide is not None and guide.stick):
         known = expected_body(guide, setup.viewer)
         person = with_stick(person, mask, search.rotation, known, state.standing, setup.method)
