@@ -8,7 +8,7 @@ LARGE := train,clients
 
 NEWER := 3.12 3.13
 
-.PHONY: setup everything demo test matrix check bench docs clean
+.PHONY: setup everything demo collected test matrix check bench docs clean
 
 setup: $(VENV)/.installed
 	@$(BIN)/python -m tritrack.first_run
@@ -20,8 +20,7 @@ $(VENV)/.installed: pyproject.toml constraints.txt
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[$(EXTRAS)]'
 	@touch $@
 
-everything: $(VENV)/.everything
-	@$(BIN)/python -m tritrack.first_run
+everything: setup $(VENV)/.everything
 
 $(VENV)/.everything: $(VENV)/.installed
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[$(EXTRAS),$(LARGE)]'
@@ -30,15 +29,19 @@ $(VENV)/.everything: $(VENV)/.installed
 demo: setup
 	$(BIN)/tritrack demo
 
+# What pytest rewrites the tests to is kept: each process of the first run would do it again.
+collected: $(VENV)/.everything
+	@$(BIN)/python -m pytest --collect-only -qq >$(VENV)/collected || { cat $(VENV)/collected; exit 1; }
+
 test: setup
-	$(BIN)/python -m pytest -m "not slow" -n 2 --dist loadfile --durations=15
+	$(BIN)/python -m pytest -m "not slow" -n 3 --dist loadfile --durations=15
 
 matrix: $(NEWER:%=matrix-%)
 
 matrix-%:
 	.ci/matrix $*
 
-check: setup
+check: $(VENV)/.installed
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy

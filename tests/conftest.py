@@ -22,17 +22,40 @@ os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 settings.register_profile("untimed", deadline=None)
 settings.load_profile("untimed")
 
+MARKS: Final = ("slow", "live")
 LONGEST: Final = (
-    *("readme", "system_wheel", "first_run", "system_namespaces", "resuming"),
+    *("readme", "system_wheel", "system_namespaces", "resuming"),
     *("landmark_network", "system_live_fallback", "board_rig"),
 )
 """Files that take minutes: begun first, so that none is left alone at the end."""
 
 
+def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    """A file without a mark that is asked for is not imported: most have no slow test."""
+    asked: str = config.option.markexpr
+    marks = [] if " or " in asked else [each for each in asked.split(" and ") if each in MARKS]
+    if not marks or collection_path.suffix != ".py":
+        return None
+    text = collection_path.read_text()
+    return any(f"mark.{mark}" not in text for mark in marks) or None
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Where files are handed out in their order (`--no-loadscope-reorder`): the longest first."""
+    refuse_marks_of_elsewhere(items)
     place = {f"test_{name}": at for at, name in enumerate(LONGEST)}
     items.sort(key=lambda item: place.get(item.path.stem, len(LONGEST)))
+
+
+def refuse_marks_of_elsewhere(items: list[pytest.Item]) -> None:
+    """A mark stands in the file of its test, where `pytest_ignore_collect` looks for it."""
+    missing = {
+        path: [mark for mark in MARKS if f"mark.{mark}" not in path.read_text()]
+        for path in {item.path for item in items}
+    }
+    for item in items:
+        if any(item.get_closest_marker(mark) for mark in missing[item.path]):
+            raise pytest.UsageError(f"{item.nodeid}: write its mark into its file")
 
 
 @pytest.fixture(scope="session")

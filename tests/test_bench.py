@@ -33,6 +33,7 @@ def test_every_figure_is_finite_and_positive(result: dict[str, Any]) -> None:
         assert one["value"] > 0, one["what"]
 
 
+@pytest.mark.slow
 def test_what_the_design_asks_for_is_measured_against_it(result: dict[str, Any]) -> None:
     """Design, section 4: 0.2 us a match; the search 2,500 and tracking 300 frame pairs a second."""
     targets = {one["what"]: one["target"] for one in result["figures"] if one["target"]}
@@ -46,6 +47,7 @@ def test_what_the_design_asks_for_is_measured_against_it(result: dict[str, Any])
     }
 
 
+@pytest.mark.slow
 def test_the_result_is_json_and_a_table(result: dict[str, Any]) -> None:
     assert json.loads(json.dumps(result)) == result
     assert table_of(result).row_count == len(result["figures"])

@@ -2,6 +2,7 @@
 
 import asyncio
 import doctest
+import shutil
 import subprocess
 import sys
 import threading
@@ -103,6 +104,7 @@ def test_nobody_at_the_endpoint_is_said() -> None:
         next(iter(subscribe(free_endpoint(), wait_s=0.3)))
 
 
+@pytest.mark.slow
 def test_track_gives_the_bodies_of_a_clip(clip: Path) -> None:
     bodies = track(clip)
     assert [body.frame for body in bodies] == list(range(len(bodies)))
@@ -177,17 +179,11 @@ def test_an_example_is_short_and_the_plain_one_is_plain(path: Path) -> None:
         assert "common" not in text
 
 
-@pytest.fixture(scope="module")
-def run(clip: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The run of a clip, its calibration beside it."""
-    out = tmp_path_factory.mktemp("runs")
-    command = [sys.executable, "-m", "tritrack", "track", str(clip), "--out", str(out)]
-    subprocess.run(command, check=True, capture_output=True)
-    return out / clip.name
-
-
 @pytest.mark.slow
-def test_the_examples_of_the_reference_are_true(clip: Path, run: Path) -> None:
+def test_the_examples_of_the_reference_are_true(
+    clip: Path, recorded_run: Path, tmp_path: Path
+) -> None:
+    run = shutil.copytree(recorded_run, tmp_path / clip.name)
     examples = doctest.DocTestFinder()
     names = ("subscribe", "track", "load_run", "export")
     with saying(120) as endpoint:
@@ -198,7 +194,8 @@ def test_the_examples_of_the_reference_are_true(clip: Path, run: Path) -> None:
             assert (name, done.failed, done.attempted > 1) == (name, 0, True)
 
 
-def test_a_format_that_there_is_not_is_refused_by_name(run: Path) -> None:
+def test_a_format_that_there_is_not_is_refused_by_name(recorded_run: Path, tmp_path: Path) -> None:
+    run = shutil.copytree(recorded_run, tmp_path / "run")
     with pytest.raises(ExportError, match="there is no format 'max': there are bvh, "):
         tritrack.export(run, "max")  # type: ignore[arg-type]
     written = tritrack.export(str(run), "bvh", run / "further.bvh", scale="cm")

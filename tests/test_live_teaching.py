@@ -114,10 +114,10 @@ def test_the_run_is_in_the_mode_of_the_model_and_beside_it(
 @pytest.mark.slow
 @pytest.mark.live
 def test_a_recording_that_plays_as_live_teaches_a_posture(plan: Plan, tmp_path: Path) -> None:
-    """Viewers, integrator and recogniser as processes; it is shown eight times, with pauses."""
+    """Viewers, integrator and recogniser as processes; it is shown five times, with pauses."""
     rig, someone = default_rig(160, 120), person(5501)
     write_rig(tmp_path / "calibration.json", rig)
-    shown = streamed(someone, 7, FPS, (NEW,) * 8)
+    shown = streamed(someone, 7, FPS, (NEW,) * 5)
     write_clip(tmp_path / "shown", someone, shown, Filming(rig, 1, 2), 1)
     settings = Settings(clip=str(tmp_path / "shown"), page=PageSettings(port=0))
     out = tmp_path / "mine.npz"

@@ -39,8 +39,9 @@ def test_a_good_rig_is_believed_by_all_pairs() -> None:
     assert advice_of(found, RIG, SHOWN, PERIOD_S, ON_TIME, 0.0) == ""
 
 
-@pytest.mark.parametrize("fault", [turned, moved], ids=["turned", "moved"])
-@pytest.mark.parametrize("wrong", range(4))
+@pytest.mark.parametrize(
+    ("wrong", "fault"), [(0, turned), (1, moved), (2, turned), (3, moved)], ids=str
+)
 def test_the_camera_that_is_wrong_is_named(wrong: int, fault: Any) -> None:
     cameras = [*RIG.cameras]
     cameras[wrong] = fault(cameras[wrong])

@@ -13,7 +13,7 @@ import numpy as np
 import psutil
 import pytest
 from rich.console import Console
-from spoiling import copied, cut_off, edit_json, of_one_view, uncalibrated
+from spoiling import copied, cut_off, edit_json, uncalibrated
 from waiting import until
 
 from common.bus.control_messages import Pulse
@@ -80,18 +80,6 @@ def slowed(clip: Path, folder: Path, rate_hz: float) -> Path:
     copied(clip, folder)
     edit_json(folder / "meta.json", lambda meta: meta.update(fps=rate_hz))
     return folder
-
-
-@pytest.mark.slow
-@pytest.mark.live
-@pytest.mark.parametrize("view", [1, 2])
-def test_one_camera_is_a_run_with_one_viewer(clip: Path, tmp_path: Path, view: int) -> None:
-    folder = slowed(clip, tmp_path / "alone", 5.0)
-    facts = live(of_one_view(settings_of(folder), view), tmp_path / "out", Console(quiet=True))
-    assert set(facts["processes"]) == {f"viewer {view}", "integrator", "recognizer"}
-    with np.load(tmp_path / "out" / "poses.npz", allow_pickle=False) as found:
-        assert found["frame"].tolist() == list(range(69))
-        assert set(found["views"]) == {"none", str(view)}
 
 
 @pytest.mark.slow

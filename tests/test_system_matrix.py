@@ -1,10 +1,14 @@
-"""Newer Pythons in CI: one that is not installed is never taken for one that was tried."""
+"""What CI tries: a Python that is not installed is never taken for one that was tried, and no test
+that is asked for lies in a file that is not imported."""
 
 import shutil
 import subprocess
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
+from conftest import pytest_ignore_collect, refuse_marks_of_elsewhere
 
 ROOT = Path(__file__).parents[1]
 
@@ -79,4 +83,44 @@ def test_the_last_line_of_ci_says_what_was_not_tried(
     assert ended.returncode == 0, ended.stderr
     assert "\n".join(ended.stdout.splitlines()[-1:]) == last
     made = (machine / "made").read_text().splitlines()
-    assert made[0] == f"-j 3 --output-sync everything matrix NEWER={' '.join(there)}"
+    assert (
+        made[0] == f"-j 4 --output-sync everything check collected matrix NEWER={' '.join(there)}"
+    )
+
+
+SLOW, BOTH = "@pytest.mark.slow\n", "pytestmark = [pytest.mark.slow, pytest.mark.live]\n"
+
+
+@pytest.mark.parametrize(
+    ("asked", "text", "left_out"),
+    [
+        ("slow and not live", SLOW, False),
+        ("slow and not live", BOTH, False),
+        ("slow and not live", "def test_it() -> None:\n", True),
+        ("live", BOTH, False),
+        ("live", SLOW, True),
+        ("not slow", SLOW, False),
+        ("slow or live", SLOW, False),
+        ("", "", False),
+    ],
+)
+def test_only_a_file_without_a_mark_that_is_asked_for_is_not_imported(
+    tmp_path: Path, asked: str, text: str, left_out: bool
+) -> None:
+    file = tmp_path / "test_it.py"
+    file.write_text(text)
+    config: Any = SimpleNamespace(option=SimpleNamespace(markexpr=asked))
+    assert bool(pytest_ignore_collect(file, config)) == left_out
+    assert not pytest_ignore_collect(tmp_path, config)
+
+
+def test_a_mark_that_is_not_in_the_file_of_its_test_is_refused(tmp_path: Path) -> None:
+    file = tmp_path / "test_it.py"
+    item: Any = SimpleNamespace(
+        path=file, nodeid="test_it.py::test_it", get_closest_marker=lambda mark: mark == "live"
+    )
+    file.write_text(BOTH)
+    refuse_marks_of_elsewhere([item])
+    file.write_text(SLOW)
+    with pytest.raises(pytest.UsageError, match=r"test_it\.py::test_it: write its mark"):
+        refuse_marks_of_elsewhere([item])

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from test_launch import assert_equals_offline, live_in_time, settings_of
+from test_launch import RATE_HZ, assert_equals_offline, live_in_time, settings_of
 from test_system_live_fallback import Run, Witness, harmed_run, pid_of, rows, slow
 
 from synth.write import ClipSet, write_set
@@ -29,8 +29,8 @@ def three(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def slow_three(three: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """At a third of its rate, which a busy machine keeps up with."""
-    return slow(three, tmp_path_factory.mktemp("slow") / "clip", 0)
+    """At two thirds of its rate."""
+    return slow(three, tmp_path_factory.mktemp("slow") / "clip", 0, RATE_HZ)
 
 
 @pytest.fixture(scope="module")

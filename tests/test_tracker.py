@@ -345,6 +345,7 @@ def test_its_example_is_true() -> None:
     assert (failed, tried > 4) == (0, True)
 
 
+@pytest.mark.slow
 def test_everyone_is_followed_in_a_loop_with_numbers_and_postures(tmp_path: Path) -> None:
     """The bodies of `tritrack track --people all`, bit for bit; each has a posture."""
     folder = tmp_path / "clips"

@@ -304,6 +304,7 @@ def test_runs_that_stand_are_read_and_clips_that_have_none_are_tracked(
     assert not noted
 
 
+@pytest.mark.slow
 def test_several_people_are_scored_one_by_one_and_by_who_is_who(tmp_path: Path) -> None:
     """A made-up scene, and a run that knows the truth but exchanges two numbers half-way."""
     (scene,) = write_scenes(tmp_path / "clips", SceneSet(2, 3.0, 1, 11), (64, 48))
