@@ -40,6 +40,10 @@ from runtime.live.free_ports import free_settings
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 SOFT = ("--disable-gpu",)
 SIZES = {"desk": (1400, 900), "phone": (390, 844)}
+AT_A_DESK, AT_A_PHONE = (
+    pytest.mark.parametrize("looking", [size], indirect=True) for size in ("desk", "phone")
+)
+"""For what is shown and answered however wide the page is."""
 
 
 @pytest.fixture
@@ -324,6 +328,7 @@ AWAY: Final = (
 
 
 @pytest.mark.slow
+@AT_A_PHONE
 def test_a_person_who_is_lost_or_gone_is_grey_and_leaves_the_list_after_a_second(
     page: LivePage, looking: Looking
 ) -> None:
@@ -353,6 +358,7 @@ def test_a_person_who_is_lost_or_gone_is_grey_and_leaves_the_list_after_a_second
 
 
 @pytest.mark.slow
+@AT_A_DESK
 def test_pictures_and_body_move_an_event_appears_and_the_end_is_played(
     page: LivePage, looking: Looking
 ) -> None:
@@ -395,6 +401,7 @@ def test_pictures_and_body_move_an_event_appears_and_the_end_is_played(
 
 
 @pytest.mark.slow
+@AT_A_DESK
 def test_a_pause_holds_the_page_while_the_run_goes_on(page: LivePage, looking: Looking) -> None:
     for frame in range(5):
         page.show(snapshot_at(frame))
@@ -410,6 +417,7 @@ def test_a_pause_holds_the_page_while_the_run_goes_on(page: LivePage, looking: L
 
 
 @pytest.mark.slow
+@AT_A_DESK
 def test_another_run_at_the_same_address_begins_afresh(page: LivePage, looking: Looking) -> None:
     for frame in range(9):
         page.show(snapshot_at(frame))
@@ -427,6 +435,7 @@ def test_another_run_at_the_same_address_begins_afresh(page: LivePage, looking: 
 
 
 @pytest.mark.slow
+@AT_A_PHONE
 def test_buttons_ask_and_answers_are_shown(page: LivePage, looking: Looking) -> None:
     page.show(snapshot_at(0))
     assert looking.until("!document.querySelector('#actions').hidden")
@@ -441,6 +450,7 @@ def test_buttons_ask_and_answers_are_shown(page: LivePage, looking: Looking) -> 
 
 
 @pytest.mark.slow
+@AT_A_DESK
 def test_an_angle_next_to_nothing_has_no_sign(page: LivePage, looking: Looking) -> None:
     keys = "document.querySelector('#keys').textContent"
     for n in range(60):  # whichever of them it shows: a busy browser leaves frames out
@@ -458,6 +468,7 @@ def test_an_angle_next_to_nothing_has_no_sign(page: LivePage, looking: Looking) 
 
 
 @pytest.mark.slow
+@AT_A_PHONE
 def test_front_and_back_are_offered_where_one_camera_alone_sees(
     page: LivePage, looking: Looking
 ) -> None:

@@ -83,12 +83,6 @@ def test_walks_through_the_room_tell_the_focal_lengths_of_any_two_cameras() -> N
 
 
 @pytest.mark.slow
-def test_twenty_walks_through_the_room_say_that_all_is_known() -> None:
-    shown = trial(1003, pieces=20)
-    assert calibrated_by_person((shown.sighting,), shown.stature_m).quality.unsure == ()
-
-
-@pytest.mark.slow
 def test_a_long_focal_length_at_15_frames_a_second_is_not_found_too_short() -> None:
     """With errors of so many metres anywhere it was 10 % short, and the turn 3 degrees off."""
     shown = trial(1001, pieces=20)

@@ -12,6 +12,7 @@ import socket
 import subprocess
 import sys
 from collections.abc import Iterator
+from importlib.metadata import distribution
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Final, NamedTuple
@@ -19,7 +20,7 @@ from urllib.request import HTTPCookieProcessor, build_opener
 
 import numpy as np
 import pytest
-from installing import pip, refuse_without_network
+from installing import needed, pip, put_into, refuse_without_network
 from source_map import tracked
 from visiting import visited
 
@@ -95,7 +96,7 @@ def result_of(command: str) -> Result:
 def copy(tmp_path: Path) -> Path:
     """What is under version control as it stands, alone in a folder.
 
-    What these sources were compiled to comes with it, where that is known: `test_first_run.py`
+    What these sources were compiled to comes with it, where that is known: `test_system_wheel.py`
     compiles it anew.
     """
     folder = tmp_path / "tritrack"
@@ -109,8 +110,16 @@ def copy(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def shell(copy: Path, tmp_path: Path) -> Iterator[dict[str, str]]:
-    """A user's environment: no cache but pip's, no virtual environment but the one to be made."""
+    """A user's environment: no cache but pip's, no virtual environment but the one to be made.
+
+    The libraries that it is to have lie in it already, where this environment has them.
+    """
     refuse_without_network(tmp_path)
+    extras = re.findall(r"^EXTRAS := (\S+)$", (ROOT / "Makefile").read_text(), re.MULTILINE)
+    version = ".".join(map(str, sys.version_info[:2]))
+    site = copy / ".venv" / "lib" / f"python{version}" / "site-packages"
+    site.mkdir(parents=True)
+    put_into(site, needed(distribution("tritrack").requires or (), extras[0].split(",")).values())
     for port in PORTS:
         with socket.socket() as door:
             if door.connect_ex(("127.0.0.1", port)) == 0:
