@@ -127,10 +127,10 @@ def _tokens(text: str) -> list[tokenize.TokenInfo]:
 
 
 def _run_at_once(node: ast.AST) -> Iterator[ast.AST]:
-    """What runs as a file is imported: nothing in functions, nothing that only checkers read."""
+    """Statements that run as a file is imported: none in functions, none for checkers alone."""
     for child in ast.iter_child_nodes(node):
         checked = isinstance(child, ast.If) and ast.unparse(child.test) == "TYPE_CHECKING"
-        if not (checked or isinstance(child, Definition)):
+        if not (checked or isinstance(child, Definition | ast.expr)):
             yield child
             yield from _run_at_once(child)
 
@@ -159,7 +159,7 @@ def _nesting(node: ast.AST, inside_elif: bool = False) -> int:
     """How many branches and loops lie within each other; what an `elif` holds is no deeper."""
     deepest = 0
     for child in ast.iter_child_nodes(node):
-        if isinstance(child, Definition | ast.Lambda):
+        if isinstance(child, Definition | ast.expr):  # no expression has a branch or a loop in it
             continue
         chained = isinstance(node, ast.If) and node.orelse == [child] and isinstance(child, ast.If)
         deepest = max(deepest, _nesting(child, chained))

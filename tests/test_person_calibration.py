@@ -23,7 +23,13 @@ def filmed_by_the_papers_rig(seed: int, posture: str) -> Trial:
     return Trial(PAPER, sighting, someone.measures["stature_m"], 0.0)
 
 
-@pytest.mark.parametrize(("seed", "posture"), [(3, "walk_toward"), (4, "swing_both_backforth")])
+@pytest.mark.parametrize(
+    ("seed", "posture"),
+    [
+        pytest.param(3, "walk_toward", marks=pytest.mark.slow),
+        (4, "swing_both_backforth"),
+    ],
+)
 def test_the_papers_rig_is_found_from_one_short_clip_whose_sides_are_exchanged_at_times(
     seed: int, posture: str
 ) -> None:

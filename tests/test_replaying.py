@@ -64,7 +64,7 @@ def test_what_is_replayed_takes_the_place_of_another_run_only_by_force(
     assert (tmp_path / "poses.npz").read_bytes() != before
 
 
-@pytest.mark.parametrize("views", [(1,), (2,)])
+@pytest.mark.parametrize("views", [pytest.param((1,), marks=pytest.mark.slow), (2,)])
 def test_a_run_of_one_view_comes_back_too(
     clip: Path, tmp_path: Path, views: tuple[ViewerNumber, ...]
 ) -> None:

@@ -52,12 +52,13 @@ def tracked(clip: Path, films: list[list[Image]], folder: Path, views: Any) -> l
         return list(track_clip(settings, decoders, views).bodies)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "views",
     [
         pytest.param((1, 2), id="both"),
-        pytest.param((1,), id="cam1", marks=pytest.mark.slow),
-        pytest.param((2,), id="cam2", marks=pytest.mark.slow),
+        pytest.param((1,), id="cam1"),
+        pytest.param((2,), id="cam2"),
     ],
 )
 def test_a_loop_gives_bit_for_bit_the_bodies_of_a_tracked_clip(
