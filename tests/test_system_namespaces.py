@@ -55,7 +55,7 @@ with open_client(settings.bus, settings.room, 120.0) as bus, open(sys.argv[2], "
 """
 FRAMES: Final = 450
 """Half a minute, for a cable that is cut and mended."""
-FEW: Final = 165
+FEW: Final = 225
 """For a cable that stays as it is from the first frame to the last."""
 WAIT_S: Final = 150.0
 NEAR_M: Final = 0.02
@@ -252,20 +252,22 @@ def test_clocks_seconds_apart_do_not_confuse_instants(
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("slow", [("viewer2",), ("viewer1", "viewer2")], ids=["one", "both"])
 def test_slow_cables_make_bodies_late_and_are_named(
+    slow: tuple[str, ...],
     room: Callable[[int], Room],
     network: Hosts,
     few: dict[int, dict[str, Any]],
 ) -> None:
-    """200 and 300 ms each way: the quicker view waits for the slower one."""
-    network.cable("viewer1", Cable(0.2))
-    network.cable("viewer2", Cable(0.3))
+    """200 ms each way: the quicker view waits for the slower one."""
+    for host in slow:
+        network.cable(host, Cable(0.2))
     heard = room(FEW).over()
     refuse_confusion(heard, few)
     assert share_of_both(heard, few) > 0.5
-    assert re.search(r"view 1 is heard 0\.[2-4]\d s late", heard.told())
-    assert re.search(r"view 2 is heard 0\.[3-4]\d s late", heard.told())
-    assert heard.newest("integrator")["latency_p50_ms"] > 290
+    for host in slow:
+        assert re.search(rf"view {host[-1]} is heard 0\.[2-4]\d s late", heard.told())
+    assert heard.newest("integrator")["latency_p50_ms"] > 190
 
 
 @pytest.mark.slow
