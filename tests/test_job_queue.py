@@ -89,6 +89,7 @@ def test_what_a_job_reads_and_writes_is_in_use_until_it_is_over(queue: JobQueue)
     )
     assert queue.uses(Path("runs/.clips/walk"))
     assert not queue.uses(Path("runs/.clips/wal"))
+    assert queue.uses(Path("runs/walk"))
     assert queue.names == {"walk"}
     assert ended(queue, job).state == "done"
     assert not queue.uses(Path("runs/.clips/walk"))

@@ -84,11 +84,14 @@ def test_only_results_and_exports_are_offered(tmp_path: Path) -> None:
 def test_a_run_that_cannot_be_replayed_or_retouched_says_why(tmp_path: Path) -> None:
     run_in(tmp_path / "a", 1000.0, run_of={"command": "single", "footage": ["/gone.mp4"]})
     (shown,) = shown_runs(found_runs(tmp_path), {}).runs
-    assert "--record" in shown.replay
+    assert "overlay" in shown.replay
     assert shown.retouch
     video = tmp_path / "here.mp4"
     video.write_bytes(b"x")
-    run_in(tmp_path / "b", 2000.0, run_of={"command": "single", "footage": [str(video)]})
+    run_in(tmp_path / "c", 3000.0, run_of={"command": "track", "footage": [str(video)]})
+    (shown, *_) = shown_runs(found_runs(tmp_path), {}).runs
+    assert ("--record" in shown.replay, shown.retouch) == (True, "")
+    run_in(tmp_path / "b", 4000.0, run_of={"command": "single", "footage": [str(video)]})
     (tmp_path / "b/recording.mcap").write_bytes(b"x")
     shown = shown_runs(found_runs(tmp_path), {}).runs[0]
     assert shown.replay == ""

@@ -28,6 +28,12 @@ TOKEN = "a-long-word"
 AXE = Path(os.environ.get("AXE", "node_modules/axe-core/axe.min.js"))
 """axe-core of npm, which is no part of this project."""
 FRAMES = 36
+"""Of a video that a job works on."""
+BEYOND = (
+    "[...document.querySelectorAll('main *')].filter("
+    "e => e.getBoundingClientRect().right > {width} && !e.closest('pre, #drop label')).length"
+)
+"""How many elements are cut by the window's edge."""
 WORK_S = 280.0
 """For one job: a busy machine compiles nothing, but tracks slowly."""
 
@@ -169,13 +175,16 @@ def test_no_serious_fault_of_access_and_nothing_beyond_the_window(
         pytest.skip("no Chromium here: the page is not looked at")
     if not AXE.is_file():
         pytest.skip("no axe-core here: npm install axe-core, or name its axe.min.js by AXE")
-    written_run(started.runs / "walk")
+    for name in ("walk", "a_run_of_a_long_name_that_has_no_space_to_be_broken_at_2026"):
+        written_run(started.runs / name)
     with open_tab(CHROMIUM, SOFT) as tab:
         for size in SIZES.values():
             looking = Looking(tab, started.address, size)
             assert looking.until("document.body?.dataset.heard")
             fill_page(looking, clip)
-            assert looking.ask("document.documentElement.scrollWidth <= innerWidth"), size
+            wide = looking.ask("document.documentElement.scrollWidth")
+            beyond = looking.ask(BEYOND.format(width=size[0]))
+            assert (wide <= size[0], beyond) == (True, 0), size
             tab.call("Runtime.evaluate", expression=AXE.read_text())
             found = tab.call(
                 "Runtime.evaluate",

@@ -5,9 +5,11 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
+from test_sound_clocks import claps
 
 from common.video.decoding import Decoder
 from common.video.pictures import VideoInfo
+from tritrack.starting import tray
 from tritrack.starting.tray import Facts, facts_of, shown_tray, together, words_of
 from tritrack.starting.uploads import Upload
 
@@ -46,6 +48,24 @@ def test_what_differs_between_two_is_said(other: VideoInfo, says: str) -> None:
     assert says in together(paths, [WALK, other])
     assert says not in together(paths, [WALK, WALK])
     assert "a.avi is camera 1" in together(paths, [WALK, other])
+
+
+def test_how_late_a_video_is_by_its_sound_stands_beside_it() -> None:
+    files, facts = [whole(1, "a.avi"), whole(2, "b.avi")], {1: Facts(WALK), 2: Facts(WALK)}
+    first, second = shown_tray(files, facts, {(1, 2): -1.25, (2, 1): 1.25}).files
+    assert "late" not in first.facts
+    assert second.facts.endswith(", -1.25 s late by its sound")
+    first, second = shown_tray(files[::-1], facts, {(1, 2): -1.25, (2, 1): 1.25}).files
+    assert second.facts.endswith(", +1.25 s late by its sound")
+    assert "late" not in shown_tray(files, facts, {(1, 2): None}).files[1].facts
+
+
+def test_the_sounds_of_two_videos_tell_how_late_one_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    sounds = {"a.avi": claps(0.0, 2), "b.avi": claps(-1.234, 3), "quiet.avi": None}
+    monkeypatch.setattr(tray, "sound_of", lambda path: sounds[path.name])
+    late_s = tray.late_by_sound(Path("a.avi"), Path("b.avi"))
+    assert late_s == pytest.approx(-1.234, abs=0.01)
+    assert tray.late_by_sound(Path("a.avi"), Path("quiet.avi")) is None
 
 
 def test_nothing_can_be_done_before_all_came_and_could_be_read() -> None:

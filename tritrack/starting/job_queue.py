@@ -120,9 +120,11 @@ class JobQueue:
         return frozenset(job.plan.run for job in self._jobs if job.plan.run and not job.is_over)
 
     def uses(self, path: Path) -> bool:
-        """Whether a job that is not over names a path, or something in it."""
-        words = [word for job in self._jobs if not job.is_over for word in job.plan.arguments]
-        return any(Path(word) == path or path in Path(word).parents for word in words)
+        """Whether a job that is not over names a path or something in it, or writes a run there."""
+        going = [job.plan for job in self._jobs if not job.is_over]
+        words = [Path(word) for plan in going for word in plan.arguments]
+        written = any(plan.run and plan.run == path.name for plan in going)
+        return written or any(word == path or path in word.parents for word in words)
 
     def shown(self) -> Jobs:
         """All of them."""

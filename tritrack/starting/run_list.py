@@ -114,7 +114,7 @@ def shown_run(run: RunFiles, pictured: float = 0.0) -> ShownRun:
         believed=float(believed) if isinstance(believed, int | float) else None,
         notes=notes_of(told),
         files=tuple((f"{at}/{quote(f)}", f, (run.folder / f).stat().st_size) for f in files),
-        replay=_why_no_replay(files),
+        replay=_why_no_replay(files, told),
         retouch=_why_no_retouch(told),
     )
 
@@ -140,9 +140,12 @@ def notes_of(summary: Mapping[str, Any]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(notes))
 
 
-def _why_no_replay(files: list[str]) -> str:
+def _why_no_replay(files: list[str], summary: Mapping[str, Any]) -> str:
     if RECORDING in files:
         return ""
+    told = summary.get("run_of")
+    if isinstance(told, Mapping) and told.get("command") == "single":
+        return "a video of one camera has an overlay instead: see its files"
     return "not recorded: add --record to the command"
 
 

@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable
+from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Final, NamedTuple, get_args
@@ -29,6 +30,7 @@ from animator.start.wishes import (
     Work,
 )
 from common.bus.messages import MOST_VIEWS
+from common.video.decoding import Decoder
 from runtime.live.free_ports import free_port
 from tritrack.machine_cameras.live_settings import live_settings
 from tritrack.starting.aside import Aside
@@ -51,7 +53,7 @@ from tritrack.starting.job_queue import Job, JobQueue
 from tritrack.starting.run_list import run_folder
 from tritrack.starting.start_files import SETTINGS, clean, delete_run, place, served
 from tritrack.starting.start_lists import StartLists
-from tritrack.starting.tray import Facts, facts_of, shown_tray
+from tritrack.starting.tray import Facts, facts_of, late_by_sound, shown_tray
 from tritrack.starting.uploads import FOLDER, MOST_BYTES, UploadRefused, Uploads
 
 JOBS_S: Final = 0.3
@@ -86,6 +88,8 @@ class StartDesk:
         self._queue = JobQueue() if queue is None else queue
         self._uploads = Uploads(given.runs / FOLDER)
         self._facts: dict[int, Facts] = {}
+        self._late_s: dict[tuple[int, int], float | None] = {}
+        """By the numbers of the first and another video, where asked for."""
         self._aside = Aside()
         self._lists = StartLists(given.runs, given.videos, self._aside)
         self._jobs_due_s = 0.0
@@ -116,7 +120,8 @@ class StartDesk:
             except (WishError, UploadRefused, PlanError) as error:
                 page.tell(Told(str(error), well=False))
         self._aside.turn()
-        page.show(shown_tray(self._uploads.files, self._facts))
+        self._hear_sounds()
+        page.show(shown_tray(self._uploads.files, self._facts, self._late_s))
         if time.monotonic() >= self._jobs_due_s:
             self._jobs_due_s = time.monotonic() + JOBS_S
             self._show_jobs(page)
@@ -152,6 +157,9 @@ class StartDesk:
     def _receive(self, wish: Chunk | Begin | Drop | Raise, page: StartPage) -> None:
         if isinstance(wish, Drop):
             self._uploads.drop(wish.file)
+            there = {one.number for one in self._uploads.files}
+            self._facts = {n: facts for n, facts in self._facts.items() if n in there}
+            self._late_s = {pair: s for pair, s in self._late_s.items() if {*pair} <= there}
             return
         if isinstance(wish, Raise):
             self._uploads.earlier(wish.file)
@@ -170,13 +178,23 @@ class StartDesk:
 
         return keep
 
+    def _hear_sounds(self) -> None:
+        """Have each video's sound held against that of the first."""
+        videos = [one for one in self._uploads.files if one.number in self._facts]
+        for other in videos[1:]:
+            pair = (videos[0].number, other.number)
+            if pair not in self._late_s:
+                self._late_s[pair] = None
+                question = partial(_late, videos[0].path, other.path)
+                self._aside.ask(question, partial(self._late_s.__setitem__, pair))
+
     def _begun(self, wish: Starting) -> Job:
         plan = self._plan(wish)
         place(plan)
         job = self._queue.add(plan)
         if isinstance(wish, Work) and plan.run:
             self._uploads.drop(None)
-            self._facts = {}
+            self._facts, self._late_s = {}, {}
         return job
 
     def _plan(self, wish: Starting) -> Plan:
@@ -247,3 +265,7 @@ class StartDesk:
             clean(self._runs, self._queue.uses)
             self._lists.hurry()
         page.show(self._queue.shown())
+
+
+def _late(first: Path, other: Path, _decoder: Decoder) -> float | None:
+    return late_by_sound(first, other)

@@ -3,14 +3,18 @@
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
+from types import MappingProxyType
 from typing import Final, NamedTuple
 
 from animator.start.sections import ShownFile, Tray
 from common.bus.messages import MOST_VIEWS
+from common.sound.sound_of_video import RATE_HZ, sound_of
+from common.sound.sound_offset import delay_of
 from common.video.clip_sources import ClipError
 from common.video.clips import probed
 from common.video.decoding import Decoder
 from common.video.pictures import DecoderDied, VideoInfo
+from runtime.sound_clocks import MOST_S
 from tritrack.starting.job_plan import name_of_files, tasks_of
 from tritrack.starting.uploads import Upload
 
@@ -35,6 +39,16 @@ def facts_of(upload: Upload, decoder: Decoder) -> Facts:
         return Facts(probed(str(upload.path), decoder))
     except (ClipError, DecoderDied) as error:
         return Facts(fault=str(error).replace(str(upload.path), upload.path.name))
+
+
+def late_by_sound(first: Path, other: Path) -> float | None:
+    """How late a video is after the first by both sounds, seconds; None where they do not tell."""
+    one = sound_of(first)
+    own = None if one is None else sound_of(other)
+    if one is None or own is None:
+        return None
+    told = delay_of(one, own, RATE_HZ, MOST_S)
+    return round(told.late_s, 3) if told.is_clear else None
 
 
 def length_s(info: VideoInfo) -> float:
@@ -66,16 +80,21 @@ def together(paths: Sequence[Path], infos: Sequence[VideoInfo]) -> str:
         said.append("Their rates differ: they are brought together by time.")
     if any(abs(length_s(one) - length_s(other)) > SAME_S for one, other in pairs):
         said.append("Their lengths differ: they were started or ended at different times.")
-    said.append("How late one is after the other is found from the motion, and told with the run.")
+    said.append("How late one is after the other is found from sound or motion, unless you say it.")
     return " ".join(said)
 
 
-def shown_tray(files: Sequence[Upload], facts: Mapping[int, Facts]) -> Tray:
+def shown_tray(
+    files: Sequence[Upload],
+    facts: Mapping[int, Facts],
+    late_s: Mapping[tuple[int, int], float | None] = MappingProxyType({}),
+) -> Tray:
     """In the form for browsers.
 
     Args:
         files: In the order of the cameras.
         facts: Of those that came whole, by their numbers.
+        late_s: How late the second of two numbers is after the first, where their sounds tell.
     """
     ready = [one for one in files if one.number in facts and not facts[one.number].fault]
     infos = [info for one in ready if (info := facts[one.number].info) is not None]
@@ -86,21 +105,25 @@ def shown_tray(files: Sequence[Upload], facts: Mapping[int, Facts]) -> Tray:
         said = "A calibration of another program."
         said += "" if len(files) == 1 else " Take it over by itself: take the other files away."
     return Tray(
-        files=[_shown(one, facts.get(one.number)) for one in files],
+        files=[
+            _shown(one, facts.get(one.number), late_s.get((files[0].number, one.number)))
+            for one in files
+        ],
         tasks=tasks_of(len(infos), calibrations) if whole else (),
         says=said if whole else "",
         name=name_of_files([one.path.stem for one in files]) if files else "",
     )
 
 
-def _shown(upload: Upload, facts: Facts | None) -> ShownFile:
+def _shown(upload: Upload, facts: Facts | None, late_s: float | None) -> ShownFile:
     info = None if facts is None else facts.info
+    late = "" if late_s is None else f", {late_s:+.2f} s late by its sound"
     return ShownFile(
         file=upload.number,
         name=upload.path.name,
         bytes=upload.bytes,
         got=upload.got,
-        facts="" if info is None else words_of(info),
+        facts="" if info is None else words_of(info) + late,
         fault="" if facts is None else facts.fault,
         kind="calibration" if upload.is_calibration else "video",
     )

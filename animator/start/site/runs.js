@@ -28,13 +28,17 @@ function row({ name, picture, when, what, frames, believed, notes, files, replay
       element("div", { className: "buttons" },
         open("replay", replay, "Replay"), open("retouch", retouch, "Retouch"),
         button(`report-${name}`, "Report", () => link.say({ type: "report", run: name }), { ariaLabel: `Report of ${name}`, title: "a page with its video, angles and worst frames" }),
-        format, button(`export-${name}`, "Export", () => link.say({ type: "export", run: name, to: format.value }), { ariaLabel: `export ${name}` }),
-        ...(others.length ? [other, button(`compare-${name}`, "Compare", () => link.say({ type: "compare", run: name, other: other.value }), { ariaLabel: `compare ${name}` })] : []),
+        pair(format, button(`export-${name}`, "Export", () => link.say({ type: "export", run: name, to: format.value }), { ariaLabel: `export ${name}` })),
+        ...(others.length ? [pair(other, button(`compare-${name}`, "Compare", () => link.say({ type: "compare", run: name, other: other.value }), { ariaLabel: `compare ${name}` }))] : []),
         button(`delete-${name}`, "Delete", async () => {
           if (await ask(`Delete the run ${name}, its files, and its copy of the videos? This cannot be undone.`)) link.say({ type: "delete", what: "run", name });
         }, { className: "danger", ariaLabel: `delete ${name}` })),
       element("details", { open: old?.querySelector("details:last-of-type")?.open ?? false }, element("summary", {}, `${files.length} files`),
         element("div", { className: "files" }, ...files.map(([address, file, bytes]) => element("a", { href: address, ...(file.endsWith(".html") ? { target: "_blank", rel: "noopener" } : { download: `${name}_${file}` }) }, `${file} (${size(bytes)})`))))));
+}
+
+function pair(...children) {
+  return element("span", { className: "pair" }, ...children);
 }
 
 function chooser(id, label, options, old) {
