@@ -12,6 +12,7 @@ from common.video.decoding import Decoder
 from tritrack.starting.run_list import (
     MOST_SHOWN,
     RunFiles,
+    bound_of,
     files_of,
     found_runs,
     notes_of,
@@ -43,6 +44,24 @@ def test_runs_are_listed_newest_first_and_what_is_none_is_not(tmp_path: Path) ->
         ("old", 3, 0.5),
     ]
     assert [run.picture for run in shown.runs] == ["", "run/old/picture.jpg?1000"]
+
+
+@pytest.mark.parametrize(
+    "facts",
+    [
+        {"frames": "many", "believed": "yes", "warnings": "dark", "trust": 3, "run_of": 7},
+        {"run_of": {"command": None, "footage": 3}, "settings": 3},
+        {"run_of": {"footage": [None, 3]}, "settings": {"size": "huge"}},
+    ],
+)
+def test_a_summary_of_another_make_is_shown_as_far_as_it_is_understood(
+    tmp_path: Path, facts: dict[str, object]
+) -> None:
+    run_in(tmp_path / "odd", 1000.0, **facts)
+    (found,) = found_runs(tmp_path)
+    (shown,) = shown_runs([found], {}).runs
+    assert (shown.name, shown.frames, shown.believed, shown.notes) == ("odd", 0, None, ())
+    assert bound_of(found.summary) == (320, 240)
 
 
 def test_a_long_list_is_cut_and_says_so(tmp_path: Path) -> None:
@@ -78,7 +97,8 @@ def test_only_results_and_exports_are_offered(tmp_path: Path) -> None:
     for name in ("overlay.mp4", "body.bvh", "body_person12.bvh", "body_personx.bvh", "notes.txt"):
         (tmp_path / "a" / name).write_bytes(b"x")
     found = ["overlay.mp4", "body.bvh", "body_person12.bvh", "poses.npz", "summary.json"]
-    assert files_of(tmp_path / "a") == found
+    assert [*files_of(tmp_path / "a")] == found
+    assert files_of(tmp_path / "gone") == {}
 
 
 def test_a_run_that_cannot_be_replayed_or_retouched_says_why(tmp_path: Path) -> None:

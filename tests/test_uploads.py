@@ -7,7 +7,7 @@ import pytest
 
 from animator.start.wishes import Begin, Chunk
 from common.bus.messages import MOST_VIEWS
-from tritrack.starting.uploads import MOST_BYTES, UploadRefused, Uploads, safe_name
+from tritrack.starting.uploads import MOST_BYTES, OWNER, UploadRefused, Uploads, safe_name
 
 
 def piece(file: int, start: int, content: bytes) -> Chunk:
@@ -112,10 +112,25 @@ def test_nothing_is_left_of_what_was_only_dropped(uploads: Uploads, tmp_path: Pa
     uploads.begin(Begin(1, "walk.mp4", 10))
     (tmp_path / "uploads/old").mkdir()
     again = Uploads(tmp_path / "uploads")
-    assert [*(tmp_path / "uploads").iterdir()] == []
+    assert [path.name for path in (tmp_path / "uploads").iterdir()] == [OWNER]
     again.begin(Begin(1, "walk.mp4", 10))
     again.close()
     assert not (tmp_path / "uploads").exists()
+
+
+def test_two_pages_never_work_in_one_folder(tmp_path: Path) -> None:
+    """One that was killed leaves its number, which may be another program's by now."""
+    folder = tmp_path / "uploads"
+    folder.mkdir()
+    (folder / OWNER).write_text(str(os.getppid()))
+    with pytest.raises(UploadRefused, match=f"process {os.getppid()}.*name another --runs"):
+        Uploads(folder)
+    os.utime(folder / OWNER, (1000.0, 1000.0))
+    Uploads(folder).close()
+    folder.mkdir()
+    for stale in ("999999999", "", "no number"):
+        (folder / OWNER).write_text(stale)
+        Uploads(folder)
 
 
 def test_a_folder_that_cannot_be_written_is_named(tmp_path: Path) -> None:

@@ -15,11 +15,11 @@ MOST_SHOWN: Final = 50
 def calibration_names(runs: Path) -> list[str]:
     """Names of the kept calibrations, newest first."""
     found = [
-        path
+        (-path.stat().st_mtime, path.stem)
         for path in (runs / CALIBRATIONS).glob("*.json")
         if NAME.fullmatch(path.stem) and path.is_file()
     ]
-    return [path.stem for path in sorted(found, key=lambda path: -path.stat().st_mtime)]
+    return [name for _, name in sorted(found)]
 
 
 def calibration_file(runs: Path, file: str) -> Path | None:

@@ -3,6 +3,7 @@
 import json
 import time
 from collections.abc import Mapping
+from contextlib import suppress
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, Final, NamedTuple
@@ -18,6 +19,7 @@ from common.config.picture_size import size_of, working_size
 from common.npz_file import Facts
 from common.video.decoding import Decoder
 from common.video.pictures import DecoderDied, Image, Size, Undecodable, Wanted
+from runtime.store.other_run import RUN_OF
 from runtime.store.past_run import is_run, open_run
 from runtime.store.run_exports import EXPORTS, PAGES
 
@@ -32,7 +34,7 @@ OFFERED: Final = (
 )
 """Files of a run that may be downloaded; exports of one of several people besides."""
 RECORDING: Final = "recording.mcap"
-WORDS: Final = {"track": "cameras", "single": "one camera", "live": "live", "replay": "replayed"}
+WORDS: Final = {"single": "one camera", "replay": "replayed"}
 
 
 class RunFiles(NamedTuple):
@@ -60,16 +62,17 @@ def run_file(runs: Path, name: str, file: str) -> Path | None:
     return folder / file
 
 
-def files_of(folder: Path) -> list[str]:
-    """The names of the files of a run that may be downloaded."""
-    found = []
-    for path in sorted(folder.iterdir()):
-        stem, _, person = path.stem.partition("_person")
-        whole = f"{stem}{path.suffix}" if person.isdecimal() else path.name
-        small = path.is_file() and not path.is_symlink()
-        if whole in OFFERED and small and path.stat().st_size <= MOST_FILE_BYTES:
-            found.append(path.name)
-    return sorted(found, key=lambda name: (name not in PAGES, name))
+def files_of(folder: Path) -> dict[str, int]:
+    """The files of a run that may be downloaded, with their bytes; pages first."""
+    found = {}
+    with suppress(OSError):  # deleted meanwhile
+        for path in folder.iterdir():
+            stem, _, person = path.stem.partition("_person")
+            whole = f"{stem}{path.suffix}" if person.isdecimal() else path.name
+            if whole in OFFERED and path.is_file() and not path.is_symlink():
+                found[path.name] = path.stat().st_size
+    small = [name for name, size in found.items() if size <= MOST_FILE_BYTES]
+    return {name: found[name] for name in sorted(small, key=lambda n: (n not in PAGES, n))}
 
 
 def found_runs(runs: Path) -> list[RunFiles]:
@@ -80,11 +83,11 @@ def found_runs(runs: Path) -> list[RunFiles]:
         if run_folder(runs, path.name) is None or not summary.is_file():
             continue
         try:
-            told = json.loads(summary.read_text())
+            told, changed_s = json.loads(summary.read_text()), summary.stat().st_mtime
         except (OSError, ValueError):
             continue
-        if isinstance(told, Mapping):
-            found.append(RunFiles(path, summary.stat().st_mtime, dict(told)))
+        if isinstance(told, dict):
+            found.append(RunFiles(path, changed_s, told))
     return sorted(found, key=lambda run: -run.changed_s)
 
 
@@ -104,16 +107,16 @@ def shown_run(run: RunFiles, pictured: float = 0.0) -> ShownRun:
     name, told = run.folder.name, run.summary
     at = f"run/{quote(name)}"
     files = files_of(run.folder)
-    believed = told.get("believed")
+    believed, frames = told.get("believed"), told.get("frames")
     return ShownRun(
         name=name,
         picture=f"{at}/picture.jpg?{pictured:.0f}" if pictured else "",
         when=time.strftime("%Y-%m-%d %H:%M", time.localtime(run.changed_s)),
         what=what_of(told),
-        frames=int(told.get("frames") or 0),
+        frames=frames if isinstance(frames, int) else 0,
         believed=float(believed) if isinstance(believed, int | float) else None,
         notes=notes_of(told),
-        files=tuple((f"{at}/{quote(f)}", f, (run.folder / f).stat().st_size) for f in files),
+        files=tuple((f"{at}/{quote(file)}", file, size) for file, size in files.items()),
         replay=_why_no_replay(files, told),
         retouch=_why_no_retouch(told),
     )
@@ -121,30 +124,35 @@ def shown_run(run: RunFiles, pictured: float = 0.0) -> ShownRun:
 
 def what_of(summary: Mapping[str, Any]) -> str:
     """What a run was: how it was made, of which videos."""
-    told = summary.get("run_of")
-    if not isinstance(told, Mapping):
-        return "live"
-    films = [Path(str(film)).name for film in told.get("footage") or ()]
-    word = WORDS.get(str(told.get("command")), str(told.get("command")))
-    if word == "cameras":
+    command, footage = made_by(summary)
+    films = [Path(film).name for film in footage]
+    word = WORDS.get(command, command)
+    if command == "track":
         word = f"{len(films)} cameras" if len(films) > 1 else "one camera"
     return f"{word}: {', '.join(films)}" if films else word
 
 
+def made_by(summary: Mapping[str, Any]) -> tuple[str, list[str]]:
+    """The command of a run and its videos; an older summary does not tell."""
+    told = summary.get(RUN_OF)
+    if not isinstance(told, Mapping) or not isinstance(told.get("footage"), list):
+        return "live", []
+    return str(told.get("command")), [str(film) for film in told["footage"]]
+
+
 def notes_of(summary: Mapping[str, Any]) -> tuple[str, ...]:
     """Warnings of a run, the advice on its calibration, and how late camera 2 was."""
-    notes = [str(each) for each in summary.get("warnings") or ()]
-    trust = summary.get("trust")
+    warnings, trust = summary.get("warnings"), summary.get("trust")
+    notes = [str(each) for each in warnings] if isinstance(warnings, list) else []
     if isinstance(trust, Mapping) and trust.get("advice"):
         notes.append(str(trust["advice"]))
     return tuple(dict.fromkeys(notes))
 
 
-def _why_no_replay(files: list[str], summary: Mapping[str, Any]) -> str:
+def _why_no_replay(files: Mapping[str, int], summary: Mapping[str, Any]) -> str:
     if RECORDING in files:
         return ""
-    told = summary.get("run_of")
-    if isinstance(told, Mapping) and told.get("command") == "single":
+    if made_by(summary)[0] == "single":
         return "a video of one camera has an overlay instead: see its files"
     return "not recorded: add --record to the command"
 
@@ -152,9 +160,8 @@ def _why_no_replay(files: list[str], summary: Mapping[str, Any]) -> str:
 def _why_no_retouch(summary: Mapping[str, Any]) -> str:
     if find_spec("viser") is None or find_spec("tomlkit") is None:
         return "needs: pip install 'tritrack[page]'"
-    told = summary.get("run_of")
-    films = told.get("footage") or () if isinstance(told, Mapping) else ()
-    if not films or not Path(str(films[0])).is_file():
+    films = made_by(summary)[1]
+    if not films or not Path(films[0]).is_file():
         return "its video is not there"
     return ""
 
@@ -174,24 +181,33 @@ def picture_of(run: RunFiles, decoder: Decoder) -> bytes | None:
         return None
     row = int(rows[len(rows) // 2])
     joints_px, sure = poses["joints_px"][row, 0], poses["confidence"][row]
-    bound = size_of(str(run.summary.get("settings", {}).get("size", "320x240")))
+    bound = bound_of(run.summary)
     image, width_px = _frame_or_paper(run, decoder, int(poses["frame"][row]), joints_px, bound)
     draw_stick(image, joints_px * (image.shape[1] / width_px), sure)
     return bytes(cv2.imencode(".jpg", image, [cv2.IMWRITE_JPEG_QUALITY, 80])[1])
+
+
+def bound_of(summary: Mapping[str, Any]) -> Size:
+    """The bound of a run's working picture, by its settings."""
+    settings = summary.get("settings")
+    told = settings.get("size") if isinstance(settings, Mapping) else None
+    try:
+        return size_of(str(told))
+    except ValueError:
+        return PICTURE
 
 
 def _frame_or_paper(
     run: RunFiles, decoder: Decoder, frame: int, joints_px: Vector, bound: Size
 ) -> tuple[Image, int]:
     """The frame, else paper on which the body fits; and the width of the working picture."""
-    told = run.summary.get("run_of")
-    films = told.get("footage") or [""] if isinstance(told, Mapping) else [""]
-    if Path(str(films[0])).is_file():
+    films = made_by(run.summary)[1]
+    if films and Path(films[0]).is_file():
         try:
-            info = decoder.probe(str(films[0]))
+            info = decoder.probe(films[0])
             size = (info.width, info.height)
             wanted = Wanted(start=max(0, frame))
-            shown = decoder.frames(str(films[0]), working_size(size, PICTURE), wanted)
+            shown = decoder.frames(films[0], working_size(size, PICTURE), wanted)
             image = next(shown).picture.copy()
             shown.close()
             return image, working_size(size, bound)[0]

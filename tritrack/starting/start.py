@@ -9,7 +9,7 @@ from typing import Final
 
 from rich.console import Console
 
-from animator.page.door import Entrance, invitation_of
+from animator.page.door import Entrance, invitation_of, refuse_port
 from animator.start.start_page import StartPage
 from common.bus.process import ProcessContext, process
 from tritrack.starting.start_desk import Given, StartDesk
@@ -33,6 +33,7 @@ def start(given: Given, port: int, browser: bool, console: Console) -> None:
         PageError: When the port is taken or not allowed.
         UploadRefused: When the folder of the runs cannot be written.
     """
+    refuse_port(port, cure="name another --port")
     entrance = Entrance(token=secrets.token_urlsafe())  # other users of this machine reach it too
     with process("start", ProcessContext()) as stop:
         desk = StartDesk(given)

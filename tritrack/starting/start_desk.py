@@ -3,7 +3,6 @@
 import time
 from collections.abc import Callable
 from functools import partial
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Final, NamedTuple, get_args
 
@@ -13,55 +12,36 @@ from animator.start.start_page import StartPage
 from animator.start.wishes import (
     AnyWish,
     Begin,
-    Board,
     Cancel,
     Chunk,
-    Compare,
     Delete,
     Drop,
-    Export,
     Format,
     Live,
     Look,
-    Open,
     Raise,
-    Report,
     WishError,
     Work,
 )
+from common.atomic_file import unwritten
 from common.bus.messages import MOST_VIEWS
 from common.video.decoding import Decoder
-from runtime.live.free_ports import free_port
-from tritrack.machine_cameras.live_settings import live_settings
 from tritrack.starting.aside import Aside
-from tritrack.starting.calibration_list import calibration_names, remove_calibration
+from tritrack.starting.calibration_list import remove_calibration
 from tritrack.starting.job_plan import (
-    CALIBRATIONS,
-    CLIPS,
-    Dropped,
-    Known,
-    Plan,
     PlanError,
-    board_plan,
-    free_name,
-    kept_calibration,
-    live_plan,
-    planned,
-    run_plan,
 )
 from tritrack.starting.job_queue import Job, JobQueue
-from tritrack.starting.run_list import run_folder
-from tritrack.starting.start_files import SETTINGS, clean, delete_run, place, served
+from tritrack.starting.start_files import clean, delete_run, place, served
 from tritrack.starting.start_lists import StartLists
 from tritrack.starting.tray import Facts, facts_of, late_by_sound, shown_tray
 from tritrack.starting.uploads import FOLDER, MOST_BYTES, UploadRefused, Uploads
+from tritrack.starting.wish_plans import Starting, There, plan_of
 
 JOBS_S: Final = 0.3
 """Interval at which jobs are shown, seconds."""
 MOST_WISHES: Final = 64
 """Largest number of wishes that are heard in a row."""
-Starting = Work | Board | Open | Export | Report | Compare | Live
-"""A wish that a command follows from."""
 
 
 class Given(NamedTuple):
@@ -119,6 +99,8 @@ class StartDesk:
                 self._do(wish, page)
             except (WishError, UploadRefused, PlanError) as error:
                 page.tell(Told(str(error), well=False))
+            except OSError as error:
+                page.tell(Told(unwritten(self._runs, error, "see that you may write it"), False))
         self._aside.turn()
         self._hear_sounds()
         page.show(shown_tray(self._uploads.files, self._facts, self._late_s))
@@ -189,63 +171,18 @@ class StartDesk:
                 self._aside.ask(question, partial(self._late_s.__setitem__, pair))
 
     def _begun(self, wish: Starting) -> Job:
-        plan = self._plan(wish)
+        there = There(
+            self._runs, self._uploads.files, self._facts, self._lists.sources, self._queue.names
+        )
+        plan = plan_of(wish, there)
+        if isinstance(wish, Live):
+            self._lists.look(False)  # only one program can hold a camera
         place(plan)
         job = self._queue.add(plan)
         if isinstance(wish, Work) and plan.run:
             self._uploads.drop(None)
             self._facts, self._late_s = {}, {}
         return job
-
-    def _plan(self, wish: Starting) -> Plan:
-        if isinstance(wish, Work):
-            return self._plan_of_files(wish)
-        if isinstance(wish, Live):
-            return self._plan_of_cameras(wish)
-        if isinstance(wish, Board):
-            (self._runs / CALIBRATIONS).mkdir(exist_ok=True)
-            return board_plan(self._runs, wish.paper)
-        named = [wish.run, wish.other] if isinstance(wish, Compare) else [wish.run]
-        for name in named:
-            if run_folder(self._runs, name) is None:
-                raise PlanError(f"there is no run {name!r} any more")
-        return run_plan(wish, self._runs, free_port())
-
-    def _plan_of_files(self, wish: Work) -> Plan:
-        tray = shown_tray(self._uploads.files, self._facts)
-        if wish.task not in tray.tasks:
-            raise PlanError("these files are not for that: drop one video, or two to eight")
-        infos = {number: facts.info for number, facts in self._facts.items()}
-        files = [
-            Dropped(one.path, info.frames if (info := infos.get(one.number)) else 0)
-            for one in self._uploads.files
-        ]
-        return planned(wish, files, self._known())
-
-    def _known(self) -> Known:
-        kept = calibration_names(self._runs)
-        folders = [self._runs, self._runs / CLIPS]
-        there = {path.name for folder in folders if folder.is_dir() for path in folder.iterdir()}
-        names = there | {*kept} | self._queue.names
-        return Known(self._runs, frozenset(names), frozenset(kept), find_spec("mcap") is not None)
-
-    def _plan_of_cameras(self, wish: Live) -> Plan:
-        known, there = self._known(), self._lists.sources
-        if not wish.cameras or len(set(wish.cameras)) < len(wish.cameras):
-            raise PlanError("choose one camera or more")
-        if not {*wish.cameras} <= {*there} or len(wish.cameras) > MOST_VIEWS:
-            raise PlanError("these cameras are not there any more: look again")
-        if wish.calibration and wish.calibration not in known.calibrations:
-            raise PlanError(f"there is no calibration {wish.calibration!r}: choose one of the list")
-        name = free_name(time.strftime("live_%Y-%m-%d_%H%M"), known.names)
-        rig = kept_calibration(self._runs, wish.calibration) if wish.calibration else None
-        port = free_port()
-        file = self._runs / SETTINGS / f"{name}.toml"
-        file.parent.mkdir(exist_ok=True)
-        sources = [there[each] for each in wish.cameras]
-        file.write_text(live_settings(sources, port, rig, wish.pictures), "utf-8")
-        self._lists.look(False)  # only one program can hold a camera
-        return live_plan(file, self._runs, name, port)
 
     def _delete(self, wish: Delete, page: StartPage) -> None:
         if self._queue.uses(self._runs / wish.name):

@@ -1,16 +1,21 @@
 """Dropped files: received piece by piece into a temporary folder, bounded in size and number."""
 
+import os
 import re
 import shutil
 from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Final
 
+import psutil
+
 from animator.start.wishes import Begin, Chunk
 from common.atomic_file import unwritten
 from common.bus.messages import MOST_VIEWS
 
 FOLDER: Final = ".uploads"
+OWNER: Final = "owner"
+"""File in it with the number of the process whose page it is."""
 MOST_BYTES: Final = 1 << 33
 """Upper bound of a video, bytes: an hour of one camera is a tenth of it."""
 MOST_CALIBRATION_BYTES: Final = 1 << 24
@@ -55,6 +60,25 @@ def safe_name(name: str) -> str:
     return kept[:MOST_LETTERS] or "video"
 
 
+def refuse_other_page(folder: Path) -> None:
+    """Refuse a folder that another start page works in: each cleans what it does not know.
+
+    Raises:
+        UploadRefused: When one does.
+    """
+    owner = folder / OWNER
+    try:
+        number, began_s = int(owner.read_text()), owner.stat().st_mtime
+        is_there = number != os.getpid() and psutil.Process(number).create_time() <= began_s
+    except (OSError, ValueError, psutil.Error):
+        return
+    if is_there:
+        raise UploadRefused(
+            f"another start page (process {number}) works in {folder.parent}: use that one, or "
+            "name another --runs"
+        )
+
+
 class Uploads:
     """The files of the tray, in the order of the cameras.
 
@@ -67,9 +91,11 @@ class Uploads:
         self.files: list[Upload] = []
         self._folder, self._most_bytes = folder, most_bytes
         self._open: dict[int, IO[bytes]] = {}
+        refuse_other_page(folder)
         shutil.rmtree(folder, ignore_errors=True)
         try:
             folder.mkdir(parents=True)
+            (folder / OWNER).write_text(str(os.getpid()))
         except OSError as error:
             raise UploadRefused(unwritten(folder, error, "name another --runs")) from error
 

@@ -1,0 +1,71 @@
+"""Wishes against what is there now: what is planned, and what is refused."""
+
+from pathlib import Path
+
+import pytest
+
+from animator.start.wishes import Compare, Export, Live, Open, Report, Work
+from common.config import config_file
+from common.video.pictures import Source, VideoInfo
+from tritrack.starting.job_plan import PlanError
+from tritrack.starting.tray import Facts
+from tritrack.starting.uploads import Upload
+from tritrack.starting.wish_plans import There, plan_of
+
+WALK = Facts(VideoInfo(width=640, height=480, fps=15.0, frames=150))
+
+
+@pytest.fixture
+def there(tmp_path: Path) -> There:
+    """A run, a clip that is kept, a calibration, two dropped videos, three cameras."""
+    for name in ("walk", ".clips/squat", ".calibrations"):
+        (tmp_path / name).mkdir(parents=True)
+    (tmp_path / "walk/poses.npz").write_bytes(b"")
+    (tmp_path / ".calibrations/room.json").write_text("{}")
+    files = [Upload(1, Path("a/cam1.avi"), 9, 9), Upload(2, Path("b/cam2.avi"), 9, 9)]
+    sources: dict[str, Source] = {"video0": 0, "video2": 2, "file0": str(tmp_path / "cam.avi")}
+    return There(tmp_path, files, {1: WALK, 2: WALK}, sources, frozenset({"clip"}))
+
+
+def test_a_name_is_free_of_runs_clips_calibrations_and_jobs(there: There) -> None:
+    assert plan_of(Work("track"), there).run == "clip_2"
+    for name in ("walk", "squat", "room"):
+        assert plan_of(Work("track", name=name), there).run == f"{name}_2"
+
+
+def test_what_the_tray_does_not_offer_is_refused(there: There) -> None:
+    with pytest.raises(PlanError, match="drop one video, or two to eight"):
+        plan_of(Work("single"), there)
+    with pytest.raises(PlanError, match="drop one video, or two to eight"):
+        plan_of(Work("track"), there._replace(facts={1: WALK}))
+
+
+def test_a_live_run_is_of_the_chosen_cameras_in_their_order(there: There) -> None:
+    plan = plan_of(Live(("file0", "video2"), "room", pictures=True), there)
+    settings = config_file.load(Path(plan.arguments[1]))
+    assert [settings.cameras["cam1"].source, settings.cameras["cam2"].device] == [
+        there.sources["file0"],
+        2,
+    ]
+    assert settings.calibration == str((there.runs / ".calibrations/room.json").resolve())
+    assert plan.address.endswith(f":{settings.page.port}")
+    assert plan.kind == "page"
+
+
+@pytest.mark.parametrize(
+    ("wish", "says"),
+    [
+        (Live(()), "choose one"),
+        (Live(("video0", "video0")), "choose one"),
+        (Live(("video0", "video7")), "look again"),
+        (Live(("video0",), "../room"), "choose one of the list"),
+        (Open("gone", "replay"), "no run 'gone' any more"),
+        (Export("../walk", "bvh"), "no run"),
+        (Report(".clips"), "no run"),
+        (Compare("walk", "gone"), "no run 'gone' any more"),
+    ],
+)
+def test_what_is_not_there_is_refused(there: There, wish: Live, says: str) -> None:
+    with pytest.raises(PlanError, match=says):
+        plan_of(wish, there)
+    assert not (there.runs / ".settings").exists()

@@ -1,0 +1,105 @@
+"""The plan that follows from a wish and from what is there now: files, runs, cameras."""
+
+import time
+from collections.abc import Mapping, Sequence
+from importlib.util import find_spec
+from pathlib import Path
+from typing import NamedTuple
+
+from animator.start.wishes import Board, Compare, Export, Live, Open, Report, Work
+from common.bus.messages import MOST_VIEWS
+from common.video.pictures import Source
+from runtime.live.free_ports import free_port
+from tritrack.machine_cameras.live_settings import live_settings
+from tritrack.starting.calibration_list import calibration_names
+from tritrack.starting.job_plan import (
+    CALIBRATIONS,
+    CLIPS,
+    Dropped,
+    Known,
+    Plan,
+    PlanError,
+    board_plan,
+    free_name,
+    kept_calibration,
+    live_plan,
+    planned,
+    run_plan,
+)
+from tritrack.starting.run_list import run_folder
+from tritrack.starting.start_files import SETTINGS
+from tritrack.starting.tray import Facts, shown_tray
+from tritrack.starting.uploads import Upload
+
+Starting = Work | Board | Open | Export | Report | Compare | Live
+"""A wish that a command follows from."""
+
+
+class There(NamedTuple):
+    """What is there as a wish comes."""
+
+    runs: Path
+    files: Sequence[Upload]
+    facts: Mapping[int, Facts]
+    """Of the files, by their numbers."""
+    sources: Mapping[str, Source]
+    """Of the cameras, by their ids."""
+    taken: frozenset[str]
+    """Names of runs that jobs write."""
+
+    @property
+    def known(self) -> Known:
+        """For the plans."""
+        kept = calibration_names(self.runs)
+        folders = [self.runs, self.runs / CLIPS]
+        there = {path.name for folder in folders if folder.is_dir() for path in folder.iterdir()}
+        names = frozenset(there | {*kept} | self.taken)
+        return Known(self.runs, names, frozenset(kept), find_spec("mcap") is not None)
+
+
+def plan_of(wish: Starting, there: There) -> Plan:
+    """The plan that follows from a wish; the settings of a live run are written.
+
+    Raises:
+        PlanError: When what it names is not there, or is not for that.
+        OSError: When the settings cannot be written.
+    """
+    if isinstance(wish, Work):
+        return _plan_of_files(wish, there)
+    if isinstance(wish, Live):
+        return _plan_of_cameras(wish, there)
+    if isinstance(wish, Board):
+        (there.runs / CALIBRATIONS).mkdir(exist_ok=True)
+        return board_plan(there.runs, wish.paper)
+    for name in [wish.run, wish.other] if isinstance(wish, Compare) else [wish.run]:
+        if run_folder(there.runs, name) is None:
+            raise PlanError(f"there is no run {name!r} any more")
+    return run_plan(wish, there.runs, free_port())
+
+
+def _plan_of_files(wish: Work, there: There) -> Plan:
+    if wish.task not in shown_tray(there.files, there.facts).tasks:
+        raise PlanError("these files are not for that: drop one video, or two to eight")
+    infos = {number: facts.info for number, facts in there.facts.items()}
+    files = [
+        Dropped(one.path, info.frames if (info := infos.get(one.number)) else 0)
+        for one in there.files
+    ]
+    return planned(wish, files, there.known)
+
+
+def _plan_of_cameras(wish: Live, there: There) -> Plan:
+    known, runs = there.known, there.runs
+    if not wish.cameras or len(set(wish.cameras)) < len(wish.cameras):
+        raise PlanError("choose one camera or more")
+    if len(wish.cameras) > MOST_VIEWS or not {*wish.cameras} <= {*there.sources}:
+        raise PlanError(f"{MOST_VIEWS} cameras at most, of those that are there: look again")
+    if wish.calibration and wish.calibration not in known.calibrations:
+        raise PlanError(f"there is no calibration {wish.calibration!r}: choose one of the list")
+    name = free_name(time.strftime("live_%Y-%m-%d_%H%M"), known.names)
+    rig = kept_calibration(runs, wish.calibration) if wish.calibration else None
+    sources, port = [there.sources[each] for each in wish.cameras], free_port()
+    file = runs / SETTINGS / f"{name}.toml"
+    file.parent.mkdir(exist_ok=True)
+    file.write_text(live_settings(sources, port, rig, wish.pictures), "utf-8")
+    return live_plan(file, runs, name, port)
