@@ -106,14 +106,14 @@ def test_what_became_of_a_gap_is_said(run: Path, to: Format, said: str) -> None:
     assert line_of_gaps(export_run(run, to, None), to) == said
 
 
-@pytest.mark.parametrize("to", ["bvh", "gltf", "usd", "trc", "mot", "c3d", "csv"])
+@pytest.mark.parametrize("to", ["bvh", "gltf", "usd", "trc", "mot", "c3d", "csv", "angles"])
 def test_every_format_is_written_beside_the_run(run: Path, to: Format) -> None:
     if to in LIBRARIES:
         library, _, extra = LIBRARIES[to]
         pytest.importorskip(library, reason=f"pip install 'tritrack[{extra}]'")
     facts = export_run(run, to, None)
     assert Path(facts["file"]) == run / OWN_NAMES[to]
-    assert facts["frames"] == (6 if to == "csv" else 5)
+    assert facts["frames"] == (6 if to in ("csv", "angles") else 5)
     assert Path(facts["file"]).stat().st_size > 1000
     assert (run / "body.osim").is_file() == (to == "mot")
 

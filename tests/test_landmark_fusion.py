@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from staging import PERSON, RIG, observation, silhouettes, standing
 
 from common.body.body import JOINT_NAMES, OTHER_SIDE, POSE_INDEX, rest_pose
+from common.body.joint_spread import FIRM_M, PLATT
 from common.body.kinematics import joints
 from common.body.observation import Landmarks
 from common.body.proportions import body_vector
@@ -28,7 +29,6 @@ from integrator.landmarks.joint_mixture import (
     Evidence,
     most_probable,
 )
-from integrator.landmarks.landmark_fusion import FIRM_M
 from integrator.landmarks.landmark_rays import AT, Rays, rays_of
 from integrator.landmarks.left_right_swap import Exchanged
 from integrator.proposal.pose_network import OTHER_SIDES
@@ -342,7 +342,7 @@ def test_each_joint_is_looked_for_with_both_sides_of_either_view() -> None:
 def test_the_tighter_a_joint_is_held_the_surer_it_is() -> None:
     """At FIRM_M as sure as Platt's offset says; doubt lowers odds by so many times."""
     precision = np.array([[1 / FIRM_M**2, 0.0, 0.0, 1 / FIRM_M**2, 0.0, 1 / FIRM_M**2]])
-    certain, steep = landmark_fusion.PLATT
+    certain, steep = PLATT
     for wider in (1.0, 3.0):
         sure = landmark_fusion._confidence(precision / wider**2)[0]
         assert np.log(sure / (1.0 - sure)) == pytest.approx(certain - steep * np.log(wider))

@@ -141,6 +141,12 @@ def _csv(run: PastRun, _name: str, _scale: Scale) -> Written:
     return Written(csv_text(run.poses).encode(), {"frames": len(run.poses["frame"])})
 
 
+def _angles(run: PastRun, _name: str, _scale: Scale) -> Written:
+    from animator.clinical.clinical_run import angles_csv
+
+    return Written(angles_csv(run.poses).encode(), {"frames": len(run.poses["frame"])})
+
+
 WRITERS: Final[dict[Format, Callable[[PastRun, str, Scale], Written]]] = {
     "bvh": _bvh,
     "gltf": _gltf,
@@ -150,5 +156,6 @@ WRITERS: Final[dict[Format, Callable[[PastRun, str, Scale], Written]]] = {
     "mot": _mot,
     "c3d": _c3d,
     "csv": _csv,
+    "angles": _angles,
 }
 """By format, the file of a run under a name; NoMotion where it has too few poses."""

@@ -39,7 +39,7 @@ def export(
 
     Args:
         folder: The run's folder.
-        to: bvh, gltf, fbx, usd, trc, mot, c3d or csv.
+        to: bvh, gltf, fbx, usd, trc, mot, c3d, csv or angles.
         out: The file to write; None: the default one in the run folder, which is replaced.
         scale: Unit of a BVH file, m or cm; other formats define theirs.
         replace: True: a file at `out` may be replaced.

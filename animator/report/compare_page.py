@@ -7,7 +7,7 @@ import numpy as np
 
 from animator.report.comparison import Comparison, Paired, apart_deg
 from animator.report.curves import Chart, Curve, chart
-from animator.report.report_page import LEAST_DEG, AngleCourse, css
+from animator.report.report_page import LEAST_DEG, AngleCourse, css, is_known
 from animator.scene import LEFT, RIGHT
 from common.body.body import Vector
 from common.templates import rendered
@@ -54,7 +54,8 @@ def compare_part(
     time_s = rows.time_s
     first_s, last_s = (float(time_s[0]), float(time_s[-1])) if len(time_s) else (0.0, 0.0)
     span_s = (first_s, max(last_s, first_s + 0.1))
-    charts = [_laid_over(*both, rows, span_s) for both in zip(*courses, strict=True)]
+    known = (both for both in zip(*courses, strict=True) if any(map(is_known, both)))
+    charts = [_laid_over(*both, rows, span_s) for both in known]
     apart = chart("joints apart", "mm", [Curve(time_s, apart_mm, "trunk")], span_s, 50.0)
     return ComparePart(title, told, charts, apart)
 

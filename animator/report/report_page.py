@@ -61,7 +61,6 @@ class ReportInput(NamedTuple):
     warnings: list[str]
     video: str
     """File name of the overlay; "" where there is none."""
-    has_bands: bool
     command: str
 
 
@@ -90,17 +89,23 @@ def person_part(
     time_s, strip = np.asarray(poses["time_s"], float), stretches_of(poses)
     sides = [values for course in courses for values in course.values_deg.values()]
     cycles = cycles_of(np.stack(sides, axis=1), time_s)
+    shown = [course for course in courses if is_known(course)]
     span_s = (float(time_s[0]), max(float(time_s[-1]), float(time_s[0]) + 0.1))
     listed = sorted(doubts(strip), key=lambda one: one.from_s - one.until_s)[:MOST_DOUBTS]
     return PersonPart(
         title,
         strip,
         sorted(listed, key=lambda one: one.from_s),
-        [_over_time(course, time_s, span_s) for course in courses],
+        [_over_time(course, time_s, span_s) for course in shown],
         cycles,
-        [_over_cycles(course, cycles, time_s) for course in courses] if cycles.spans else [],
+        [_over_cycles(course, cycles, time_s) for course in shown] if cycles.spans else [],
         shots,
     )
+
+
+def is_known(course: AngleCourse) -> bool:
+    """Whether an angle is known in any row."""
+    return any(np.isfinite(values).any() for values in course.values_deg.values())
 
 
 def _over_time(course: AngleCourse, time_s: Vector, span_s: tuple[float, float]) -> Chart:

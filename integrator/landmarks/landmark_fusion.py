@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import Vector
+from common.body.joint_spread import confidence_of
 from integrator.landmarks import (
     front_back_flip,
     left_right_swap,
@@ -24,13 +25,9 @@ from integrator.proposal.pose_network import OTHER_SIDES
 
 ARMS, LEGS = slice(0, 6), slice(6, 12)
 """Indices of the arms and the legs in JOINTS."""
-FIRM_M: Final = 0.02
 ASTRAY: Final = 0.25
 """Growth of a proposal's spread, statures, where the views' facings deny its yaw altogether: its
 joints are wrong together, by about a trunk's breadth."""
-PLATT: Final = (2.15, 4.25)
-"""Platt scaling of a joint's confidence: its logit at a standard deviation of FIRM_M, and the fall
-where the deviation grows e-fold. Fitted to joints less than 50 mm off (docs/measurements.md)."""
 Probability = TypeVar("Probability", float, Vector)
 _DIAGONAL: Final = [0, 3, 5]
 
@@ -160,9 +157,7 @@ def _each_way(values: Vector, was: NDArray[np.int_]) -> NDArray[np.float64]:
 def _confidence(precisions: NDArray[np.float64]) -> Vector:
     """Probability that joints are less than 50 mm off, by their precisions (12, 6)."""
     spreads_m = np.sqrt(3.0 / precisions[:, _DIAGONAL].sum(axis=1))
-    certain, steep = PLATT
-    found: Vector = 1.0 / (1.0 + np.exp(-certain) * (spreads_m / FIRM_M) ** steep)
-    return found
+    return confidence_of(spreads_m)
 
 
 def _doubted(probability: Probability, doubt: float) -> Probability:

@@ -4,7 +4,7 @@ import re
 from pathlib import Path
 from typing import Final, Literal
 
-Format = Literal["bvh", "gltf", "fbx", "usd", "trc", "mot", "c3d", "csv"]
+Format = Literal["bvh", "gltf", "fbx", "usd", "trc", "mot", "c3d", "csv", "angles"]
 OWN_NAMES: Final[dict[Format, str]] = {
     "bvh": "body.bvh",
     "gltf": "body.glb",
@@ -14,6 +14,7 @@ OWN_NAMES: Final[dict[Format, str]] = {
     "mot": "body.mot",
     "c3d": "markers.c3d",
     "csv": "poses.csv",
+    "angles": "angles.csv",
 }
 """Default file name in the run folder, by format."""
 EXPORTS: Final = (*OWN_NAMES.values(), "body.osim")

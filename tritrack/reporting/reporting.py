@@ -113,7 +113,6 @@ def _input_of(run: PastRun, video: str) -> ReportInput:
         trust=[*trust_lines(summary), *clock_line(summary)],
         warnings=[str(one) for one in summary.get("warnings", ())],
         video=video,
-        has_bands=False,
         command=f"tritrack {of.get('command', 'track')}",
     )
 

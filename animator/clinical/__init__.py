@@ -1,0 +1,1 @@
+"""Angles as clinics and OpenSim name them, and how far off they may be."""
