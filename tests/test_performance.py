@@ -6,11 +6,13 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import numpy as np
 import pytest
 from spoiling import copied, refilmed
 from staging import PERIOD_S, RIG, report
 
+from common.body.observation import Box
 from common.bus.instant import Instant
 from common.bus.messages import Body, Guide, View, ViewerNumber
 from common.config.settings import Settings
@@ -18,6 +20,7 @@ from common.method import DEFAULT, Mode
 from common.video.clip_facts import Clip, ClipView, Meta
 from integrator import merge_state
 from integrator.people import several
+from integrator.people.lived_instant import Merged
 from runtime.offline import performance
 from runtime.offline.lockstep import Decoders, track_clip
 from runtime.offline.performance import STAGE, LockstepState, Prepared, Watch, performed
@@ -215,18 +218,29 @@ def test_views_side_by_side_take_short_turns_and_only_meanwhile() -> None:
     assert sys.getswitchinterval() == before_s
 
 
-@pytest.mark.parametrize(("people", "counts"), [((0,), True), ((1,), True), ((1, 2), False)])
-def test_views_of_several_people_are_no_evidence_about_the_rig(
-    monkeypatch: pytest.MonkeyPatch, guided: object, people: tuple[int, ...], counts: bool
+def two_in_a_view(viewer: ViewerNumber, gap_px: int) -> tuple[View, View, View]:
+    """A view of two people whose boxes are apart by some columns; and of each alone."""
+    view = report(viewer, box=Box(left=10, right=40, top=10, bottom=100), track=3)
+    (one,) = view.people
+    right = Box(left=41 + gap_px, right=80, top=10, bottom=100)
+    other = msgspec.structs.replace(one, box=right, track=4)
+    both = msgspec.structs.replace(view, people=(other, one))
+    return both, view, msgspec.structs.replace(view, people=(other,))
+
+
+@pytest.mark.parametrize(("gap_px", "views"), [(5, [1, 2]), (-1, [1])])
+def test_each_of_several_people_is_evidence_where_no_other_is_close(
+    gap_px: int, views: list[int]
 ) -> None:
-    """One view may have shown the other person for a moment."""
+    """Of two who are close in view 2 that view may have shown the other for a moment."""
     moment = dict[str, Any](captured_s=0.0, clock_s=0.0, frame=0)
-    bodies = tuple(Body(person=n, status="empty", views="none", **moment) for n in people)
-
-    def step(state: several.State, instant: Instant, *_: object) -> Any:
-        return state, several.Merged(bodies, Guide(frames=(0, 0), **moment), instant)
-
-    monkeypatch.setattr("integrator.people.several.step", step)
-    witness = Witness()
-    performed(prepared(), {}, witness, None, Course())
-    assert bool(witness.seen.rows) == counts
+    bodies = tuple(Body(person=n, status="tracking", views="both", **moment) for n in (1, 2))
+    first, second = two_in_a_view(1, 5), two_in_a_view(2, gap_px)
+    each = (Instant((first[1], second[1])), Instant((first[2], second[2])))
+    merged = Merged(bodies, Guide(frames=(0, 0), **moment), each[0], each)
+    reports = {1: first[0], 2: second[0]}
+    found = performance.evidence(reports, merged)
+    assert [(body.person, sorted(own)) for body, own in found] == [(1, views), (2, views)]
+    assert [own[1].people[0].track for _, own in found] == [3, 4]
+    alone = Merged(bodies[:1], merged.guide, each[0])
+    assert performance.evidence(reports, alone) == [(bodies[0], reports)]

@@ -143,8 +143,7 @@ def test_what_both_views_see_is_kept_until_a_camera_is_moved() -> None:
     witness({}, {1: seen_at(1, 0.2), 2: seen_at(2, 0.22)}, body_with())
     witness({}, {1: seen_at(1, 0.3), 2: seen_at(2, 0.32)}, body_with((2,)))
     witness({}, {1: seen_at(1, 0.4), 2: seen_at(2, 0.42)}, body_with())
-    sighting = witness.sightings(two_views())
-    assert sighting is not None
+    (sighting,) = witness.sightings(two_views())
     (first, second), size_px = sighting
     assert first.times_s.tolist() == [0.0, 0.1, 0.2]
     assert second.times_s.tolist() == [0.02, 0.22]
@@ -158,8 +157,7 @@ def test_of_a_long_run_its_first_frames_are_kept(monkeypatch: pytest.MonkeyPatch
     witness = Witness()
     for n in range(5):
         witness({}, {1: seen_at(1, n / 10)} if n else {2: seen_at(2, 0.0)}, body_with())
-    sighting = witness.sightings(two_views())
-    assert sighting is not None
+    (sighting,) = witness.sightings(two_views())
     (first, second), _ = sighting
     assert first.times_s.tolist() == [0.1, 0.2, 0.3]
     assert second.times_s.tolist() == [0.0]
@@ -231,6 +229,63 @@ def test_a_rig_is_judged_by_what_was_seen_and_advised_unless_it_is_insisted_on(
         "trust": msgspec.to_builtins(found)
     }
     assert len(asked.by) == 1
+
+
+def witnessed_people(*instants: int) -> Witness:
+    """People seen in so many instants of both views, the first with number 1."""
+    witness = Witness()
+    for person, count in enumerate(instants, 1):
+        body = msgspec.structs.replace(body_with(), person=person)
+        for n in range(count):
+            witness({}, {1: seen_at(1, n / 10), 2: seen_at(2, n / 10)}, body)
+    return witness
+
+
+def test_each_person_is_evidence_of_their_own_whoever_was_seen_longest_first() -> None:
+    """Who was seen half as long as that one counts, who was seen for less does not."""
+    each = witnessed_people(2, 8, 4, 3).sightings(two_views())
+    assert [len(seen.tracks[0].times_s) for seen in each] == [8, 4]
+
+
+@pytest.mark.parametrize(
+    ("believe", "believed", "instants"),
+    [
+        ((False, False), False, 8),
+        ((False, True), True, 6),
+        ((True, False), True, 8),
+        ((None, False), False, 6),
+    ],
+)
+def test_a_rig_is_wrong_where_it_contradicts_everybody(
+    monkeypatch: pytest.MonkeyPatch,
+    believe: tuple[bool | None, bool],
+    believed: bool,
+    instants: int,
+) -> None:
+    """A mistake about who is who in a view contradicts one of them alone; advice is by the person
+    seen longest who could be judged."""
+    by_instants = dict(zip((8, 6), believe, strict=True))
+    advised: list[int] = []
+
+    def least(_rig: Any, seen: Any, *_: Any) -> PairTrust | None:
+        own = by_instants[len(seen.tracks[0].times_s)]
+        trust = (
+            None
+            if own is None
+            else Trust(believed=own, moments=80, odd=(), **{**TRUST, "advice": ""})
+        )
+        return None if trust is None else PairTrust(0, 1, trust)
+
+    def advice(_found: Any, _rig: Any, seen: Any, *_: Any) -> str:
+        advised.append(len(seen.tracks[0].times_s))
+        return ""
+
+    monkeypatch.setattr("calibration.gate.pair_trust.least_believed", least)
+    monkeypatch.setattr("calibration.gate.pair_trust.advice_of", advice)
+    clip = msgspec.structs.replace(two_views(), rig=RIG)
+    facts = trust_facts(clip, witnessed_people(6, 8), (Clock(0.0),), insisted=False)
+    assert facts["trust"]["believed"] is believed
+    assert advised == [instants]
 
 
 def test_a_rig_of_which_too_little_is_seen_is_not_judged(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -321,6 +376,5 @@ def test_two_of_several_cameras_are_held_against_each_other_whatever_their_numbe
     witness = Witness()
     witness({}, {1: seen_at(1, 0.1), 3: seen_at(3, 0.3)}, body_with())
     clip = msgspec.structs.replace(two_views(), views=(first, third))
-    sighting = witness.sightings(clip)
-    assert sighting is not None
+    (sighting,) = witness.sightings(clip)
     assert [track.times_s.tolist() for track in sighting.tracks] == [[0.1], [0.3]]

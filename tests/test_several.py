@@ -7,8 +7,9 @@ from crowd_of_two import BLUE, LEFT_M, RED, RIGHT_M, Crowd, of_all, pose_at, sho
 from staging import RIG
 from test_rig_agreement import turned
 
+from calibration.gate import rig_agreement
 from common.bus.control_messages import Command
-from common.bus.messages import Body
+from common.bus.messages import Agreement, Body
 from integrator.measuring.known_body import Unmeasured
 from integrator.people import recognition, several
 from integrator.people.lived_instant import KEPT_S
@@ -121,6 +122,21 @@ def test_a_new_rig_is_everybodys() -> None:
     state = several.with_room(crowd.state, room)
     assert [life.state.rig for life in state.lives] == [rig, rig]
     assert [life.number for life in state.lives] == [1, 2]
+
+
+def test_the_rooms_agreement_is_of_the_person_who_agrees_best() -> None:
+    """The lowest number, the room's own person, may have another's observation in a view; a wrong
+    rig contradicts everybody."""
+    room = Crowd().state.room
+    agreement = Agreement(apart_mm=9.0, soles_mm=0.0, facing_deg=0.0, motion_mm=9.0, believed=0.2)
+    doubted, believed = (
+        room._replace(agreement=rig_agreement.State(told=one))
+        for one in (agreement, msgspec.structs.replace(agreement, believed=0.9))
+    )
+    for states in ((room, doubted, believed), (believed, doubted, room)):
+        assert several._agreed(room, states).agreement is believed.agreement
+    assert several._agreed(room, (doubted, room)).agreement is doubted.agreement
+    assert several._agreed(room, (room,)) == room
 
 
 def test_the_guide_is_of_the_first_person_in_sight() -> None:

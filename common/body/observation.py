@@ -18,6 +18,12 @@ class Box(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     top: int
     bottom: int
 
+    def meets(self, other: "Box", near_px: int = 0) -> bool:
+        """Whether two boxes share a pixel, or have some no farther from each other than this."""
+        across = max(self.left, other.left) - min(self.right, other.right)
+        down = max(self.top, other.top) - min(self.bottom, other.bottom)
+        return max(across, down) <= near_px
+
 
 class Measure(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """What one viewer reads off the opening posture, in its own pixels (section 2.4)."""

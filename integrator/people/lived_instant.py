@@ -27,6 +27,8 @@ class Merged(NamedTuple):
     """About the first of them in sight."""
     of_first: Instant
     """The views, with that person alone where several are followed."""
+    of_each: tuple[Instant, ...] = ()
+    """The same for each of the bodies of several people."""
 
 
 def lived(

@@ -1,5 +1,7 @@
 """An instant of several people: each has a life of their own, and a number of their own."""
 
+from collections.abc import Sequence
+
 from common.bus.control_messages import Command
 from common.bus.instant import Instant
 from integrator import commands, merge, merge_state
@@ -42,8 +44,9 @@ def step(
         return _without_people(state, instant)
     shown.sort(key=lambda each: each[0].number)
     first = next((each for each in shown if each[0].seen_s == now_s), shown[0])
-    bodies = tuple(body for _, body, _, _ in shown)
-    return state._replace(room=first[0].state), Merged(bodies, first[2], first[3])
+    bodies, of_each = tuple(each[1] for each in shown), tuple(each[3] for each in shown)
+    room = _agreed(first[0].state, [life.state for life, *_ in shown])
+    return state._replace(room=room), Merged(bodies, first[2], first[3], of_each)
 
 
 def with_room(state: State, room: merge_state.State) -> State:
@@ -64,6 +67,15 @@ def commanded(state: State, command: Command) -> State:
         for life in state.lives
     )
     return state._replace(lives=lives)
+
+
+def _agreed(room: merge_state.State, states: Sequence[merge_state.State]) -> merge_state.State:
+    """The room with the agreement of the person who agrees best with its rig: a wrong rig
+    contradicts everybody, a mistake about who is who in a view one of them."""
+    believed = {n: told.believed for n, each in enumerate(states) if (told := each.agreement.told)}
+    if not believed:
+        return room
+    return room._replace(agreement=states[max(believed, key=believed.__getitem__)].agreement)
 
 
 def _without_people(state: State, instant: Instant) -> tuple[State, Merged]:

@@ -107,7 +107,8 @@ def performed(
             going, reports, merged = _stepped(going, frames, calibration, pool)
             for body in merged.bodies:
                 bodies.append(body)
-            witness(frames, _evidence(reports, merged), merged.bodies[0])
+            for body, own in evidence(reports, merged):
+                witness(frames, own, body)
             if watch:
                 watch.each(frames, reports, merged.bodies)
             course.tell(share_of(clip, frames))
@@ -170,10 +171,27 @@ def _stepped(
     return going, reports, merged
 
 
-def _evidence(reports: dict[int, View], merged: Merged) -> dict[int, View]:
-    """The reports that are evidence about the rig: none where several people are known, as of two
-    who are close one view may have shown the other for a moment."""
-    return reports if len(merged.bodies) == 1 else {}
+def evidence(reports: dict[int, View], merged: Merged) -> list[tuple[Body, dict[int, View]]]:
+    """What is evidence about the rig: each person in the views where no other is close to them, as
+    of two who are close one view may have shown the other for a moment."""
+    if len(merged.bodies) == 1:
+        return [(merged.bodies[0], reports)]
+    found = []
+    for body, own in zip(merged.bodies, merged.of_each, strict=True):
+        shown = {n: own.views[n - 1] for n in reports}
+        apart = {
+            n: view for n, view in shown.items() if view is not None and _is_apart(view, reports[n])
+        }
+        found.append((body, apart))
+    return found
+
+
+def _is_apart(own: View, whole: View) -> bool:
+    """Whether the person of a view touches no other one there."""
+    person = own.person
+    return person is not None and not any(
+        person.box.meets(other.box) for other in whole.people if other.track != person.track
+    )
 
 
 def _saved(

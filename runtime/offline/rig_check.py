@@ -1,7 +1,7 @@
 """Whether a run's rig is believable: all views' landmarks are kept and tested at its end."""
 
 from collections.abc import Sequence
-from typing import Final, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import msgspec
 
@@ -15,6 +15,9 @@ from common.video.clip_facts import Clip, ClipView
 from common.video.clip_sources import Offsets
 from viewer.captured_frame import CapturedFrame
 
+if TYPE_CHECKING:
+    from calibration.gate.pair_trust import PairTrust
+
 MOST_LATE_FRAMES: Final = 0.75
 """Delay of a view, frames, above which the clip is tracked again with its times set back."""
 DOUBTED: Final = 0.05
@@ -26,11 +29,16 @@ MOST_FRAMES: Final = 3_000
 NONE: Final[Offsets] = {}
 
 
+SEEN_AS_LONG: Final = 0.5
+"""Share of the instants of the person seen longest that another needs for their evidence to
+count."""
+
+
 class Seen(NamedTuple):
     """The observations so far."""
 
-    rows: dict[int, list[Row]]
-    """By view."""
+    rows: dict[int, dict[int, list[Row]]]
+    """By person's number, then by view."""
     moved: bool = False
     """A camera was moved."""
 
@@ -45,27 +53,43 @@ class Witness:
     def __call__(
         self, _: dict[ViewerNumber, CapturedFrame], reports: dict[int, View], body: Body
     ) -> None:
-        """Process one instant; observations after a move do not count against the given rig."""
+        """Process a person's views of one instant; observations after a move do not count against
+        the given rig."""
         self.seen = self.seen._replace(moved=self.seen.moved or bool(body.moved))
         if self.seen.moved:
             return
+        own = self.seen.rows.setdefault(body.person, {})
         for number, report in reports.items():
-            rows = self.seen.rows.setdefault(number, [])
+            rows = own.setdefault(number, [])
             if len(rows) < MOST_FRAMES:
                 rows.append(row_of(report))
 
-    def sightings(self, clip: Clip) -> Sightings | None:
-        """All views of a clip; None where it has one."""
+    def sightings(self, clip: Clip) -> tuple[Sightings, ...]:
+        """All views of each person, who was seen longest first; none where a clip has one view."""
         if len(clip.views) < 2:
-            return None
-        tracks = tuple(track_of_rows(self.seen.rows.get(v.number, [])) for v in clip.views)
-        return Sightings(tracks, clip.views[0].size)
+            return ()
+        each = [
+            Sightings(
+                tuple(track_of_rows(rows.get(view.number, [])) for view in clip.views),
+                clip.views[0].size,
+            )
+            for rows in self.seen.rows.values() or [{}]
+        ]
+        each.sort(key=_instants, reverse=True)
+        least = SEEN_AS_LONG * _instants(each[0])
+        return tuple(seen for seen in each if _instants(seen) >= least)
+
+
+def _instants(seen: Sightings) -> int:
+    """Number of a person's frames in the view that shows them least often but one."""
+    shown = [int((track.confidence > 0.0).any(axis=1).sum()) for track in seen.tracks]
+    return sorted(shown)[-2]
 
 
 def clocks_seen(clip: Clip, witness: Witness) -> Clocks:
-    """The clocks of the views after the first, by all observations."""
+    """The clocks of the views after the first, by all observations of who was seen longest."""
     seen = witness.sightings(clip)
-    return () if seen is None else clocks_of(seen)
+    return clocks_of(seen[0]) if seen else ()
 
 
 def late_by(clip: Clip, clocks: Clocks, given: Offsets) -> tuple[float, ...]:
@@ -90,7 +114,9 @@ def trust_facts(
 ) -> Facts:
     """For the summary: the rig's assessment, and the cure where it is not believable.
 
-    Of more than two cameras the pair is assessed that is believed least.
+    Of more than two cameras the pair is assessed that is believed least; of several people by the
+    person who agrees best with the rig: a wrong one contradicts everybody, a mistake about who is
+    who in a view one of them.
 
     Args:
         clip: The tracked clip.
@@ -100,14 +126,18 @@ def trust_facts(
         different_people: The views followed different people for a time: what contradicts the rig
             is not evidence against it.
     """
-    from calibration.gate.pair_trust import advice_of, least_believed
+    from calibration.gate.pair_trust import advice_of
 
-    seen = witness.sightings(clip)
-    if clip.rig is None or seen is None or all(len(t.times_s) < 2 for t in seen.tracks[1:]):
+    everyone = [
+        seen
+        for seen in witness.sightings(clip)
+        if any(len(track.times_s) >= 2 for track in seen.tracks[1:])
+    ]
+    if clip.rig is None or not everyone:
         return {}
     period_s, names = clip.every / clip.views[0].fps, [view.name for view in clip.views]
     rig = _renamed(clip.rig, names)
-    found = least_believed(rig, seen, period_s, clocks)
+    found, seen = _judged(rig, everyone, period_s, clocks)
     if found is None or (different_people and not found.trust.believed):
         return {}
     one, other, trust = found
@@ -117,6 +147,18 @@ def trust_facts(
         trust = msgspec.structs.replace(trust, advice=advice)
     several = {"cameras": [names[one], names[other]]} if len(names) > 2 else {}
     return {"trust": {**msgspec.to_builtins(trust), **several}}
+
+
+def _judged(
+    rig: Rig, everyone: Sequence[Sightings], period_s: float, clocks: Clocks
+) -> tuple["PairTrust | None", Sightings]:
+    """The verdict by the first person who believes the rig, else by the first who can judge it."""
+    from calibration.gate.pair_trust import least_believed
+
+    verdicts = [(least_believed(rig, seen, period_s, clocks), seen) for seen in everyone]
+    judged = [each for each in verdicts if each[0] is not None]
+    believing = (each for each in judged if each[0] is not None and each[0].trust.believed)
+    return next(believing, (judged or verdicts)[0])
 
 
 def _renamed(rig: Rig, names: Sequence[str]) -> Rig:

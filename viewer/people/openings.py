@@ -7,7 +7,7 @@ import cv2
 import msgspec
 import numpy as np
 
-from common.body.observation import Box, Measure, Observation
+from common.body.observation import Measure, Observation
 from common.bus.messages import Guide, View
 from common.raster.silhouette_report import unpack
 from common.raster.similarity import Mask
@@ -67,15 +67,8 @@ def is_touched(person: Observation, mask: Mask, others: Sequence[Observation]) -
         mask: (H, W) the silhouette.
         others: All other people in the picture.
     """
-    near = [other for other in others if _meet(person.box, other.box)]
+    near = [other for other in others if person.box.meets(other.box, NEAR_PX)]
     if not near:
         return False
     wide = cv2.dilate(mask.view(np.uint8), np.ones((2 * NEAR_PX + 1,) * 2, np.uint8))
     return any(bool((unpack(other) & wide.view(np.bool_)).any()) for other in near)
-
-
-def _meet(one: Box, other: Box) -> bool:
-    """Whether two boxes are nearer than silhouettes that touch."""
-    across = max(one.left, other.left) - min(one.right, other.right)
-    down = max(one.top, other.top) - min(one.bottom, other.bottom)
-    return max(across, down) <= NEAR_PX
