@@ -1,12 +1,16 @@
 """What a live run loses when a part is killed or frozen, it is stopped, or its parent is killed.
 
 Run from the checkout: .venv/bin/python benchmarks/chaos.py [--trials N] [--only CASE...] [--json]
+
+With --people 2 --cameras 3 the demo of several people is run, and each person has figures. A clip
+of a scene in which one of them leaves is given by --clip FOLDER, with --only "left alone".
 """
 
 import argparse
 import itertools
 import json
 import os
+import shutil
 import signal
 import socket
 import subprocess
@@ -15,8 +19,9 @@ import tempfile
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Final, NamedTuple
+from typing import Final, Literal, NamedTuple
 
+import cv2
 import numpy as np
 import psutil
 from rich.console import Console
@@ -26,10 +31,13 @@ from common.bus.control_messages import Pulse
 from common.bus.messages import Body
 from common.config.part_settings import BusSettings, PageSettings
 from common.config.settings import Settings
+from common.npz_file import Arrays
 from common.video.clips import open_clip
 from runtime.live.free_ports import free_settings
 from runtime.live.table import table_of_rows
 from runtime.store.past_run import PastRunError, open_run
+from runtime.store.run_people import people_of
+from runtime.store.runs import BELIEVED
 from tritrack import demo
 
 HARM_S: Final = 4.0
@@ -41,8 +49,10 @@ tenth of a second, in which it heeds no signal."""
 ORPHANED_S: Final = 2.0
 PATIENCE_S: Final = 120.0
 LIVE: Final = (sys.executable, "-m", "tritrack", "live")
-STARTED: Final = ("animator", "integrator", "recognizer", "viewer 1", "viewer 2")
-"""In the order in which a run starts them."""
+STARTED: Final = ("animator", "integrator", "recognizer")
+"""In the order in which a run starts them; then come the viewers, by number."""
+COVERED_S: Final = (6.0, 9.0)
+"""From when to when camera 1 is covered, where it is."""
 
 
 class Outcome(NamedTuple):
@@ -63,18 +73,22 @@ class Outcome(NamedTuple):
     """Rows of the run; None where it cannot be read."""
     lost_s: float | None = None
     """What was heard before the parent died and is not in the run, seconds."""
+    people: str = ""
+    """Of each of several people: the number, rows, and share of them that are believed."""
 
 
 class Trial:
     """One live run, and a witness on its bus."""
 
-    def __init__(self, clip: Path, folder: Path) -> None:
+    def __init__(self, clip: Path, folder: Path, cameras: int, people: Literal[1, "all"]) -> None:
         """Start it."""
+        self.cameras = range(1, cameras + 1)
         settings = free_settings(Settings(clip=str(clip), pictures=True))
         self.bus: BusSettings = settings.bus
         self.page: PageSettings = settings.page
         self.out = folder / "out"
-        text = f'clip = "{clip}"\npictures = true\n[page]\nport = {self.page.port}\n'
+        text = f'clip = "{clip}"\npictures = true\npeople = {json.dumps(people)}\n'
+        text += f"[page]\nport = {self.page.port}\n"
         (folder / "run.toml").write_text(f'{text}[bus]\nendpoint = "{self.bus.endpoint}"\n')
         words = [*LIVE, str(folder / "run.toml"), "--no-wait", "--out", str(self.out)]
         self.run = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
@@ -89,11 +103,12 @@ class Trial:
         children = psutil.Process(self.run.pid).children()
         zygote, *forked = by_age(spoken_of(children, "forkserver"))
         in_order = by_age([*spoken_of(children, "spawn_main"), *forked])
-        named = {"zygote": zygote, **dict(zip(STARTED, in_order, strict=False))}
+        names = (*STARTED, *(f"viewer {number}" for number in self.cameras))
+        named = {"zygote": zygote, **dict(zip(names, in_order, strict=False))}
         decoders = by_age(zygote.children())
         held = {one: pipes(one) for one in [*forked, *decoders]}
         shared = set.intersection(*held.values())
-        for number, one in itertools.product((1, 2), decoders):
+        for number, one in itertools.product(self.cameras, decoders):
             if held.get(one, set()) & held[named[f"viewer {number}"]] - shared:
                 named[f"decoder {number}"] = one
         return named
@@ -152,7 +167,37 @@ class Trial:
             len(held),
             len(found),
             None if whole else lost_s,
+            people_in(poses),
         )
+
+
+def people_in(poses: Arrays) -> str:
+    """Of each of several people: the number, rows, and share of them that are believed."""
+    told = []
+    for number in people_of(poses):
+        own = poses["status"][poses["person"] == number]
+        told.append(f"{number}: {len(own)} rows, {np.isin(own, BELIEVED).mean():.0%}")
+    return "" if people_of(poses) == (0,) else ", ".join(told)
+
+
+def covered(clip: Path, folder: Path) -> Path:
+    """A copy of a clip in which camera 1 sees nothing for a time."""
+    copy = folder / "covered" / clip.name
+    shutil.copytree(clip, copy)
+    shutil.copy(clip.parent / "calibration.json", copy)
+    (video,) = copy.glob("cam1.*")
+    pictures = cv2.VideoCapture(str(clip / video.name))
+    rate_hz, code = pictures.get(cv2.CAP_PROP_FPS), int(pictures.get(cv2.CAP_PROP_FOURCC))
+    size = tuple(int(pictures.get(n)) for n in (cv2.CAP_PROP_FRAME_WIDTH, 4))
+    out = cv2.VideoWriter(str(video), code, rate_hz, size)
+    for n in itertools.count():
+        there, picture = pictures.read()
+        if not there:
+            break
+        is_covered = COVERED_S[0] <= n / rate_hz < COVERED_S[1]
+        out.write(np.zeros_like(picture) if is_covered else picture)
+    out.release()
+    return copy
 
 
 def spoken_of(processes: Sequence[psutil.Process], word: str) -> list[psutil.Process]:
@@ -183,6 +228,10 @@ def by(number: signal.Signals) -> Callable[[psutil.Process], None]:
     return lambda process: process.send_signal(number)
 
 
+def nothing(_: psutil.Process) -> None:
+    """The run is left alone."""
+
+
 class Case(NamedTuple):
     """What is done to which part; "" is the run's own process."""
 
@@ -192,6 +241,8 @@ class Case(NamedTuple):
     whole: bool = True
     """The run goes on until the end of its clip."""
     starting: bool = False
+    covers: bool = False
+    """Camera 1 is covered for a time."""
 
 
 CASES: Final = (
@@ -205,6 +256,8 @@ CASES: Final = (
     Case("viewer 1 frozen 2 s", "viewer 1", freeze),
     Case("viewer 2 frozen 2 s", "viewer 2", freeze),
     Case("integrator frozen 2 s", "integrator", freeze),
+    Case("camera 1 covered 3 s", "", nothing, covers=True),
+    Case("left alone", "", nothing),
     Case("SIGINT running", "", by(signal.SIGINT), whole=False),
     Case("SIGTERM running", "", by(signal.SIGTERM), whole=False),
     Case("SIGINT starting", "", by(signal.SIGINT), whole=False, starting=True),
@@ -213,10 +266,20 @@ CASES: Final = (
 )
 
 
-def tried(case: Case, clip: Path, frames: int, turn: int) -> Outcome:
+class Clip(NamedTuple):
+    """What the runs are of."""
+
+    path: Path
+    frames: int
+    cameras: int
+    people: Literal[1, "all"]
+
+
+def tried(case: Case, clip: Clip, turn: int) -> Outcome:
     """One trial of a case."""
     with tempfile.TemporaryDirectory(prefix="tritrack-chaos-") as folder:
-        one = Trial(clip, Path(folder))
+        path = covered(clip.path, Path(folder)) if case.covers else clip.path
+        one = Trial(path, Path(folder), clip.cameras, clip.people)
         if case.starting:
             time.sleep(STARTING_S[turn % len(STARTING_S)])
             one.remember()
@@ -226,7 +289,7 @@ def tried(case: Case, clip: Path, frames: int, turn: int) -> Outcome:
                 one.harmed(case.part, case.harm)
             except BusError:
                 one.run.kill()
-        return one.outcome(frames, case.whole, restarted="killed" in case.name and case.whole)
+        return one.outcome(clip.frames, case.whole, restarted="killed" in case.name and case.whole)
 
 
 def lives(process: psutil.Process) -> bool:
@@ -269,7 +332,20 @@ def row_of(name: str, outcomes: Sequence[Outcome]) -> dict[str, object]:
         "orphans": each([one.orphans for one in outcomes]),
         "ports held": each([one.ports for one in outcomes]),
         "rows": each([one.rows for one in outcomes]),
+        "people": " | ".join(one.people for one in outcomes if one.people),
     }
+
+
+def clip_of(given: argparse.Namespace, folder: Path) -> Clip:
+    """The clip that is asked for: the demo's, or another."""
+    if given.clip is not None:
+        path = given.clip.resolve()
+    elif given.people > 1:
+        path = demo.made_scene(folder, given.people, given.cameras)
+    else:
+        path = demo.made_clip(folder, given.cameras)
+    views = open_clip(Settings(clip=str(path))).views
+    return Clip(path, views[0].frames, len(views), 1 if given.people == 1 else "all")
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -277,15 +353,17 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--trials", type=int, default=3)
     parser.add_argument("--only", nargs="*", choices=[case.name for case in CASES])
+    parser.add_argument("--people", type=int, default=1)
+    parser.add_argument("--cameras", type=int, default=2)
+    parser.add_argument("--clip", type=Path, help="this clip, of one person or of --people")
     parser.add_argument("--json", action="store_true")
     given = parser.parse_args(arguments)
     console, rows = Console(stderr=True), []
     with tempfile.TemporaryDirectory(prefix="tritrack-chaos-") as folder:
-        clip = demo.made_clip(Path(folder))
-        frames = open_clip(Settings(clip=str(clip))).views[0].frames
+        clip = clip_of(given, Path(folder))
         for case in CASES:
             if given.only is None or case.name in given.only:
-                outcomes = [tried(case, clip, frames, turn) for turn in range(given.trials)]
+                outcomes = [tried(case, clip, turn) for turn in range(given.trials)]
                 rows.append(row_of(case.name, outcomes))
                 console.print(" | ".join(str(value) for value in rows[-1].values()))
     print(json.dumps(rows, indent=1)) if given.json else Console(width=160).print(
