@@ -14,8 +14,8 @@ from common.video.frame_cache import FrameCache
 from integrator import diagnostics
 from integrator.live_rig.live_calibration import LiveCalibration, Looking
 from integrator.live_rig.rig_solver import SolverAtOnce
-from integrator.people import several
-from integrator.people.several import Merged
+from integrator.people import recognition
+from integrator.people.lived_instant import Merged
 from runtime.offline.frame_pairs import instants, share_of
 from runtime.offline.rig_check import Seen, Witness
 from runtime.steps.together import joined, looked
@@ -48,7 +48,7 @@ class Prepared(NamedTuple):
     clip: Clip
     frame_caches: dict[ViewerNumber, FrameCache]
     viewers: dict[ViewerNumber, track.State]
-    integrator: several.State
+    integrator: recognition.State
     odd: list[str]
     """Warnings about its backgrounds."""
     seconds: float
@@ -59,7 +59,7 @@ class LockstepState(NamedTuple):
     """The whole state between instants."""
 
     viewers: dict[ViewerNumber, track.State]
-    integrator: several.State
+    integrator: recognition.State
     calibration: Looking
     witness: Seen
     noticed: diagnostics.State
@@ -76,7 +76,7 @@ class Performance(NamedTuple):
     """The result of tracking a clip."""
 
     bodies: Sequence[Body]
-    integrator: several.State
+    integrator: recognition.State
     noticed: diagnostics.State
     news: tuple[str, ...]
     """Reports about the rig."""
