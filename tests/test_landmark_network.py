@@ -3,7 +3,9 @@
 import os
 import subprocess
 import sys
+import time
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from functools import lru_cache
 from pathlib import Path
 from types import SimpleNamespace
@@ -154,6 +156,24 @@ def test_peaks_are_those_of_plain_numpy_at_every_border_of_a_map() -> None:
             place, near = plain_peak(shares, *at)
             assert joints[j, i] == pytest.approx(place)
             assert about[j, i] == pytest.approx(near / shares.sum())
+
+
+def test_a_network_is_read_once_by_two_threads_that_ask_at_once(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    import onnxruntime
+
+    def slowly(*_: object, **__: object) -> object:
+        time.sleep(0.05)
+        return object()
+
+    monkeypatch.setattr(onnxruntime, "InferenceSession", slowly)
+    try:
+        with ThreadPoolExecutor(2) as pool:
+            first, second = pool.map(landmark_looks.opened, [Path("any.onnx")] * 2)
+    finally:
+        landmark_looks._read.cache_clear()
+    assert first is second
 
 
 def test_cells_far_below_the_highest_are_left_out() -> None:

@@ -166,6 +166,15 @@ def test_a_clip_is_left_as_it_is_where_the_person_cannot_tell(
     assert looks.asked == []
 
 
+def test_a_clip_with_a_rig_does_not_wait_for_what_searches_for_one(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """It takes as long to import as a quarter of the start."""
+    clip = first_two(rig=TURNED)
+    monkeypatch.setitem(sys.modules, "calibration.person.many_calibration", None)
+    assert by(clip) == Looked(clip)
+
+
 @pytest.mark.parametrize("missing", ["landmarks", "proposals"])
 def test_a_method_without_landmarks_asks_no_person(
     monkeypatch: pytest.MonkeyPatch, missing: str

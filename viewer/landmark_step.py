@@ -12,7 +12,7 @@ from common.body.observation import Landmarks, Pixel
 from common.config.settings import Settings
 from common.video.pictures import Image
 from viewer.captured_frame import CapturedFrame
-from viewer.landmarks.landmark_looks import network_of
+from viewer.landmarks.landmark_looks import network_of, opened
 from viewer.landmarks.landmark_window import Window, same_place
 from viewer.landmarks.outside_source import nearest_landmarks
 from viewer.landmarks.own_landmarks import (
@@ -26,7 +26,7 @@ from viewer.landmarks.person_mask import LandmarkResult, Shown
 from viewer.people import known_people
 from viewer.people.close_people import are_close, beside, cheapest, looked_at_alone, without
 from viewer.people.known_people import PEOPLE, Look, People, corners_of, is_person
-from viewer.people.people_detector import Detection, overlap, people_in
+from viewer.people.people_detector import NETWORK, Detection, overlap, people_in
 from viewer.room.body_region import Bytes
 from viewer.silhouette.silhouette import Seen, seen_of
 
@@ -108,6 +108,13 @@ def step(
     if not shown and not is_person(followed.landmarks):
         shown = {after.followed: followed}
     return state._replace(people=after, detected=None), _shown(after, shown)
+
+
+def open_networks(settings: Settings) -> None:
+    """Read the networks of a run that looks itself, before its first frame asks for them."""
+    if settings.looks_itself:
+        opened(network_of(settings.landmarks))
+        opened(NETWORK)
 
 
 def searched(state: State) -> State:

@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 from typing import NamedTuple
 
@@ -63,6 +64,7 @@ from runtime.steps.method_cameras import (
 from runtime.steps.together import viewer_of
 from runtime.unfinished.work import Course
 from viewer import track
+from viewer.landmark_step import open_networks
 from viewer.landmarks.landmark_sources import Sources, oddities, outside_sources
 from viewer.room.background_source import VideoBackground, opening_of_view
 
@@ -231,7 +233,10 @@ def _prepared(
         view.number: FrameCache(decoders.of[view.number], due=view.frames) for view in clip.views
     }
     viewers: dict[ViewerNumber, track.State] = {}
-    learnt = openings(clip, settings.silhouette, frame_caches)
+    with ThreadPoolExecutor(1) as beside:
+        if method.landmarks:
+            beside.submit(open_networks, settings)
+        learnt = openings(clip, settings.silhouette, frame_caches)
     for view, opens in zip(clip.views, learnt, strict=True):
         odd += [opens.odd] if opens.odd else []
         viewers[view.number] = viewer_of(

@@ -1,6 +1,7 @@
 """Looks of the network of landmarks: its file, its logits of a window, two looks as one."""
 
 import os
+import threading
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
@@ -25,15 +26,15 @@ SHIPPED: Final = Path(__file__).with_name("landmarks.onnx")
 LEAST: Final = 1e-12
 """Of a share of a map, where two looks are joined."""
 OUTPUTS: Final = ("maps", "told", "mask")
+_READING: Final = threading.Lock()
 Logits = NDArray[np.float32]
 Seen = tuple[Logits, Logits, Logits]
 """Logits of a look: maps (15, CELLS, CELLS), the outputs of no place (BINS + 1 + 15,), and the
 person's mask (CELLS, CELLS)."""
 
 
-@lru_cache(maxsize=4)
 def opened(network: Path = SHIPPED) -> "InferenceSession":
-    """A network, on one core.
+    """A network, on one core; read once, whichever thread asks for it first.
 
     onnxruntime would report its use to its maker, and keep a file for it, unless it is set not to
     before it is imported: nothing leaves this machine.
@@ -41,6 +42,12 @@ def opened(network: Path = SHIPPED) -> "InferenceSession":
     Args:
         network: A file that `tritrack train --what landmarks` wrote.
     """
+    with _READING:
+        return _read(network)
+
+
+@lru_cache(maxsize=4)
+def _read(network: Path) -> "InferenceSession":
     os.environ["ORT_DISABLE_TELEMETRY"] = "1"
     import onnxruntime
 
