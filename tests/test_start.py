@@ -6,6 +6,7 @@ import threading
 from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
+from urllib.request import urlopen
 
 import numpy as np
 import pytest
@@ -19,6 +20,7 @@ from test_page_server import free_port
 
 from animator.page.door import Entrance, invitation_of
 from animator.start.start_page import StartPage
+from calibration.foreign.toml_rig import toml_text
 from common.config import config_file
 from common.rig.rig_file import load_rig
 from tritrack.starting.start import LOOK_S
@@ -120,6 +122,7 @@ def job_ended(looking: Looking, number: int = 1) -> str:
 def test_a_dropped_video_becomes_a_run_that_is_exported_and_deleted(
     looking: Looking, started: Started, short: Path
 ) -> None:
+    pytest.importorskip("viser", reason="the page is an extra: install tritrack[page]")
     choose(looking, short / "cam1.avi")
     assert looking.until("!!document.querySelector('#do-single')")
     told = words(looking, "#files")
@@ -149,6 +152,13 @@ def test_a_dropped_video_becomes_a_run_that_is_exported_and_deleted(
     )["result"]["value"].splitlines()
     with np.load(started.runs / "walk/poses.npz") as poses:
         assert len(rows) == len(poses["frame"]) + 1
+
+    click(looking, "#retouch-walk")
+    assert looking.until("!!document.querySelector('#jobs a.button')", WORK_S)
+    with urlopen(looking.ask("document.querySelector('#jobs a.button').href")) as page:
+        assert page.status == 200
+    click(looking, "#jobs button")
+    assert job_ended(looking, 3) == "done", words(looking, "#jobs")
 
     click(looking, "#delete-walk")
     assert looking.until("document.querySelector('#asking').open")
@@ -238,9 +248,8 @@ def test_everything_is_reached_by_the_keyboard(looking: Looking, started: Starte
 
 
 def test_what_is_dropped_is_seen_at_once_and_can_be_taken_away(
-    looking: Looking, started: Started, tmp_path: Path
+    looking: Looking, started: Started
 ) -> None:
-    (tmp_path / "Calib.toml").write_text("not = a calibration")
     looking.ask(
         "{const data = new DataTransfer(); data.items.add(new File(['no video'], '../<b>.avi'));"
         "dispatchEvent(Object.assign(new Event('drop', {cancelable: true}), {dataTransfer: data}))}"
@@ -251,10 +260,34 @@ def test_what_is_dropped_is_seen_at_once_and_can_be_taken_away(
     click(looking, "#files button[id^=away]")
     assert looking.until("!document.querySelector('#files li')")
     assert [path.name for path in (started.runs / ".uploads").iterdir()] == ["owner"]
-    choose(looking, tmp_path / "Calib.toml")
+
+
+@pytest.mark.slow
+def test_a_calibration_of_another_program_is_taken_over_or_refused_with_its_reason(
+    looking: Looking, started: Started, clip: Path, tmp_path: Path
+) -> None:
+    theirs = tmp_path / "Calib.toml"
+    theirs.write_text("not = a calibration")
+    choose(looking, theirs)
     click(looking, "#do-import")
     assert job_ended(looking) == "failed"
     assert "Calib.toml" in words(looking, "#jobs [role=alert]")
+    click(looking, "#files button[id^=away]")
+    assert looking.until("!document.querySelector('#files li')")
+    ours = load_rig(clip.parent / "calibration.json")
+    theirs.write_text(toml_text(ours, "caliscope"))
+    choose(looking, theirs)
+    click(looking, "#do-import")
+    assert job_ended(looking, 2) == "done", words(looking, "#jobs")
+    assert looking.until("!!document.querySelector('#calibrations li')")
+    assert "2 cameras" in words(looking, "#calibrations")
+    taken = load_rig(started.runs / ".calibrations/Calib.json")
+    for one, other in zip(taken.cameras, ours.cameras, strict=True):
+        assert np.allclose(one.K, other.K)
+    click(looking, "#delete-calibration-Calib")
+    looking.ask("document.querySelector('#asking button[value=yes]').click()")
+    assert looking.until("!document.querySelector('#calibrations li')")
+    assert [*(started.runs / ".calibrations").iterdir()] == []
 
 
 @pytest.mark.slow
