@@ -66,10 +66,13 @@ def test_a_report_is_shown_without_a_script_and_the_rest_is_only_loaded(runs: Pa
         *("/calibration/room.txt", "/calibration/../walk/poses.csv", "/calibration/.json"),
         *("/calibration/..%2Fwalk%2Fposes.csv", "/camera/video1.jpg", "/", "", "/run"),
         *("/run/walk/poses.csv/", "/run/walk/poses.csv%00", "/run/linked/poses.csv"),
+        *("/calibration/linked.json", "/calibration/plain"),
     ],
 )
 def test_nothing_else_is(runs: Path, path: str) -> None:
     (runs / "linked").symlink_to(runs / "walk")
+    (runs / ".calibrations/linked.json").symlink_to(runs.parent / "secret.csv")
+    written(runs / ".calibrations/plain")
     assert got(runs, path) is None
 
 

@@ -2,12 +2,20 @@
 
 import os
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from animator.start.wishes import Begin, Chunk
 from common.bus.messages import MOST_VIEWS
-from tritrack.starting.uploads import MOST_BYTES, OWNER, UploadRefused, Uploads, safe_name
+from tritrack.starting.uploads import (
+    MOST_BYTES,
+    OWNER,
+    SPARE_BYTES,
+    UploadRefused,
+    Uploads,
+    safe_name,
+)
 
 
 def piece(file: int, start: int, content: bytes) -> Chunk:
@@ -72,6 +80,16 @@ def test_what_is_too_much_or_nothing_is_refused(uploads: Uploads, wish: Begin, s
     with pytest.raises(UploadRefused, match=says):
         uploads.begin(wish)
     assert uploads.files == []
+
+
+def test_a_file_that_would_leave_less_than_a_gigabyte_is_refused(
+    uploads: Uploads, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    free = SimpleNamespace(free=SPARE_BYTES + 100)
+    monkeypatch.setattr("tritrack.starting.uploads.shutil.disk_usage", lambda _: free)
+    with pytest.raises(UploadRefused, match="no space"):
+        uploads.begin(Begin(1, "walk.mp4", 101))
+    assert uploads.begin(Begin(1, "walk.mp4", 100)) in uploads.files
 
 
 def test_a_disk_keeps_its_last_space(tmp_path: Path) -> None:
