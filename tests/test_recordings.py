@@ -1,5 +1,6 @@
 """What was performed in clips and runs, tracked once and kept."""
 
+import shutil
 from collections.abc import Callable
 from glob import glob
 from io import StringIO
@@ -104,11 +105,17 @@ def test_work_that_was_stopped_goes_on_where_it_was(
 
 def test_the_opening_posture_is_no_part_of_the_motion(runs: list[Path], tmp_path: Path) -> None:
     """Measuring and empty frames name nothing: a model of a T-pose would know every clip."""
-    (recording,) = recordings(runs[:1], None, tmp_path, QUIET)
+    longer = shutil.copytree(runs[0], tmp_path / "longer")
     with np.load(runs[0] / "poses.npz", allow_pickle=False) as found:
-        moving = np.isin(found["status"], ("tracking", "predicted"))
-    assert 0 < np.isfinite(recording.rows).all(axis=1).sum() <= moving.sum()
-    assert (recording.posture, recording.performer) == ("raise_right_lateral", "s90001")
+        arrays = dict(found)
+    moving = np.isin(arrays["status"], ("tracking", "predicted"))
+    arrays["status"][np.flatnonzero(moving)[:30]] = "measuring"
+    np.savez(longer / "poses.npz", **arrays)
+    one, other = recordings([runs[0], longer], None, tmp_path / "kept", QUIET)
+    whole, less = (np.isfinite(each.rows).all(axis=1).sum() for each in (one, other))
+    assert 0 < whole <= moving.sum()
+    assert 0 < less <= moving.sum() - 30
+    assert (one.posture, one.performer) == ("raise_right_lateral", "s90001")
 
 
 def test_a_clip_without_a_posture_is_named_before_any_is_tracked(
