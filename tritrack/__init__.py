@@ -4,6 +4,9 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any, Final
 from warnings import warn
 
+from common import __name__ as COMMON
+from runtime import __name__ as RUNTIME
+
 if TYPE_CHECKING:
     from common.bus.bus import BusError
     from common.bus.bus_keys import KeysError
@@ -54,19 +57,19 @@ __all__ = [
 ]
 
 ELSEWHERE: Final = {
-    "Bodies": "runtime.steps.loop_bodies",
-    "BusError": "common.bus.bus",
-    "CalibrationError": "common.rig.rig_file",
-    "ClipError": "common.video.clip_sources",
-    "DecoderDied": "common.video.pictures",
+    "Bodies": f"{RUNTIME}.steps.loop_bodies",
+    "BusError": f"{COMMON}.bus.bus",
+    "CalibrationError": f"{COMMON}.rig.rig_file",
+    "ClipError": f"{COMMON}.video.clip_sources",
+    "DecoderDied": f"{COMMON}.video.pictures",
     "ExportError": "tritrack.export_formats",
-    "KeysError": "common.bus.bus_keys",
-    "PastRunError": "runtime.store.past_run",
-    "SettingsError": "common.config.part_settings",
-    "Tracker": "runtime.steps.tracker",
+    "KeysError": f"{COMMON}.bus.bus_keys",
+    "PastRunError": f"{RUNTIME}.store.past_run",
+    "SettingsError": f"{COMMON}.config.part_settings",
+    "Tracker": f"{RUNTIME}.steps.tracker",
     "export": "tritrack.exporting",
 }
-"""Modules of the public names that are not in `runtime.client`."""
+"""Modules of the public names that are not in `runtime.client`, as a wheel calls them too."""
 
 
 def __getattr__(name: str) -> Any:
@@ -76,4 +79,4 @@ def __getattr__(name: str) -> Any:
         name = "View"
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(ELSEWHERE.get(name, "runtime.client")), name)
+    return getattr(import_module(ELSEWHERE.get(name, f"{RUNTIME}.client")), name)
