@@ -1,6 +1,8 @@
 """What is typed for recorded clips reaches what does the work; what that gives is said."""
 
 import json
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -197,3 +199,13 @@ def test_a_run_is_retouched_with_its_video_and_notes(monkeypatch: pytest.MonkeyP
     typed(retouch, "run")
     assert done.last[:4] == (Path("run"), None, None, 8080)
     assert Settings().page.port == 8080, "the same page as a live run's"
+
+
+def test_loading_a_command_collects_garbage_hardly_ever() -> None:
+    """What is loaded stays: Python's own thresholds would look through it some 200 times."""
+    code = (
+        "import gc, tritrack.__main__, runtime.offline.batch; "
+        "print(sum(each['collections'] for each in gc.get_stats()))"
+    )
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert int(run.stdout) < 60
