@@ -1,20 +1,19 @@
 """Which command follows from which files and wishes, and what is refused."""
 
 from pathlib import Path
-from typing import get_args
 
 import msgspec
 import pytest
 from command_line import unknown_in
 
-from animator.start.wishes import Compare, Export, Format, Open, Report, Work
-from runtime.store.run_exports import OWN_NAMES
+from animator.start.wishes import Compare, Export, Open, Report, Work
 from tritrack.starting.job_plan import (
     Dropped,
     Known,
     Plan,
     PlanError,
     board_plan,
+    demo_plan,
     free_name,
     live_plan,
     name_of_files,
@@ -59,6 +58,11 @@ def test_a_calibration_goes_beside_the_clip_and_a_run_is_recorded_where_it_can_b
     assert plan.arguments[-1] == "--record"
 
 
+def test_everyone_is_followed_where_that_is_asked_for() -> None:
+    assert "--people all" in planned(Work(task="track", everyone=True), TWO, KNOWN).command
+    assert "--people" not in planned(Work(task="track"), TWO, KNOWN).command
+
+
 def test_calibrating_keeps_what_the_command_says() -> None:
     person = planned(Work(task="person", stature_m=1.82), TWO, Known(RUNS))
     assert person.command == (
@@ -80,7 +84,7 @@ def test_calibrating_keeps_what_the_command_says() -> None:
 
 EVERY = (
     planned(Work(task="single"), ONE, KNOWN),
-    planned(Work(task="track", offset_s=1.0, calibration="room"), TWO, KNOWN),
+    planned(Work(task="track", offset_s=1.0, calibration="room", everyone=True), TWO, KNOWN),
     planned(Work(task="person"), TWO, KNOWN),
     planned(Work(task="board", square_mm=40.0), TWO, KNOWN),
     planned(Work(task="import"), [Dropped(Path("up/3/Calib.toml"))], KNOWN),
@@ -90,7 +94,8 @@ EVERY = (
     run_plan(Export("walk", "bvh"), RUNS, 8081),
     run_plan(Report("walk"), RUNS, 8081),
     run_plan(Compare("walk", "walk_2"), RUNS, 8081),
-    live_plan(RUNS / ".settings/live.toml", RUNS, "live", 8081),
+    live_plan(RUNS / ".settings/live.toml", KNOWN, "live"),
+    demo_plan(RUNS),
 )
 
 
@@ -102,10 +107,6 @@ def test_every_plan_is_a_command_that_there_is(plan: Plan) -> None:
 def test_two_runs_are_compared_by_their_folders() -> None:
     plan = run_plan(Compare("walk", "walk_2"), RUNS, 8081)
     assert plan.command == "tritrack compare runs/walk runs/walk_2"
-
-
-def test_the_page_offers_every_format_of_the_command() -> None:
-    assert get_args(Format) == tuple(OWN_NAMES)
 
 
 def test_what_can_be_done_follows_from_what_was_dropped() -> None:

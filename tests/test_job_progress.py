@@ -33,6 +33,15 @@ def test_what_is_no_progress_after_all_changes_nothing() -> None:
     assert after('progress {"what": "x", "done": 7, "of": null}').share == 1.0
 
 
+def test_the_first_page_that_is_named_is_the_commands_own() -> None:
+    said = after(
+        "the bus: tcp/127.0.0.1:7447", "the page: http://127.0.0.1:8123", "http://127.0.0.1:1"
+    )
+    assert said.address == "http://127.0.0.1:8123"
+    assert after("the page is at http://127.0.0.1:81; Ctrl-C ends it").address[-3:] == ":81"
+    assert after("http://example.org:80").address == ""
+
+
 def test_the_last_fault_is_why_it_ended() -> None:
     said = after("error: one is bad", "more", "error: 2 of 2 clips could not be tracked")
     assert said.fault == "2 of 2 clips could not be tracked"

@@ -40,7 +40,7 @@ def test_one_work_runs_at_a_time_and_the_next_follows(queue: JobQueue) -> None:
 def test_a_page_opens_beside_the_work_and_another_takes_its_place(queue: JobQueue) -> None:
     address = "http://127.0.0.1:1"
     code = f"import time; print('the page is at {address}', flush=True); time.sleep(60)"
-    page = Plan("page", (code,), kind="page", address=address)
+    page = Plan("page", (code,), kind="page")
     work, first = queue.add(SLEEPS), queue.add(page)
     queue.turn()
     assert (work.state, first.state) == ("running", "running")

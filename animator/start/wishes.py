@@ -16,7 +16,6 @@ MOST_TEXT_BYTES: Final = 10_000
 
 Task = Literal["single", "track", "person", "board", "import"]
 """A job for the dropped files."""
-Format = Literal["bvh", "gltf", "fbx", "usd", "trc", "mot", "c3d", "csv"]
 
 
 class WishError(ValueError):
@@ -60,6 +59,8 @@ class Work(Wish, frozen=True):
     """One of the list; "": none, the person tells where the cameras are."""
     offset_s: float | None = None
     """Delay of camera 2, seconds; None: estimated."""
+    everyone: bool = False
+    """Follow everyone, each with a number."""
     stature_m: float = 1.75
     square_mm: float | None = None
     """Side of a board's square, as measured; None: as printed."""
@@ -69,6 +70,10 @@ class Board(Wish, frozen=True):
     """The calibration board shall be written as a file to print."""
 
     paper: Literal["a4", "a3"] = "a3"
+
+
+class Demo(Wish, frozen=True):
+    """A made-up person shall be tracked live."""
 
 
 class Cancel(Wish, frozen=True):
@@ -88,7 +93,8 @@ class Export(Wish, frozen=True):
     """A run shall be written as a file for other programs."""
 
     run: str
-    to: Format
+    to: str
+    """A format of the list."""
 
 
 class Report(Wish, frozen=True):
@@ -126,7 +132,7 @@ class Live(Wish, frozen=True):
     """The live page may show small pictures."""
 
 
-AnyWish = (Begin | Drop | Raise | Work | Board | Cancel | Open) | (
+AnyWish = (Begin | Drop | Raise | Work | Board | Demo | Cancel | Open) | (
     Export | Report | Compare | Delete | Look | Live
 )
 

@@ -13,6 +13,8 @@ from common.bus.messages import MOST_VIEWS
 CLIPS: Final = ".clips"
 """Folder of the runs' own videos, hidden so that `runs/*/` matches runs alone."""
 CALIBRATIONS: Final = ".calibrations"
+DEMO: Final = "demo"
+"""Name of the demo's run."""
 MOST_NAME: Final = 60
 """Characters allowed in the name of a run."""
 NAME: Final = re.compile(rf"[A-Za-z0-9][A-Za-z0-9_-]{{0,{MOST_NAME - 1}}}", re.ASCII)
@@ -48,8 +50,6 @@ class Plan(NamedTuple):
     """A page stays open until it is ended, a work ends by itself."""
     frames: int = 0
     """Of the video; 0: not known."""
-    address: str = ""
-    """Of its own page."""
 
     @property
     def command(self) -> str:
@@ -161,6 +161,7 @@ def _tracking(wish: Work, files: Sequence[Dropped], known: Known, name: str) -> 
     if wish.calibration:
         placed += ((kept_calibration(known.runs, wish.calibration), folder / "calibration.json"),)
     more = [] if wish.offset_s is None else ["--offset", f"{wish.offset_s:g}"]
+    more += ["--people", "all"] if wish.everyone else []
     more += ["--record"] if known.records else []
     title = f"{name}: follow a person with {len(files)} cameras"
     return Plan(title, ("track", str(folder), *out, *SIZE, *more), placed, name, frames=frames)
@@ -229,12 +230,17 @@ def run_plan(wish: Open | Export | Report | Compare, runs: Path, port: int) -> P
         f"{wish.run}: {wish.page}",
         (wish.page, folder, *page, "--port", str(port)),
         kind="page",
-        address=f"http://127.0.0.1:{port}",
     )
 
 
-def live_plan(settings: Path, runs: Path, name: str, port: int) -> Plan:
+def live_plan(settings: Path, known: Known, name: str) -> Plan:
     """The plan of a live run by a settings file."""
-    arguments = ("live", str(settings), "--out", str(runs / name))
-    address = f"http://127.0.0.1:{port}"
-    return Plan(f"{name}: live", arguments, run=name, kind="page", address=address)
+    record = ("--record",) if known.records else ()
+    arguments = ("live", str(settings), "--out", str(known.runs / name), *record)
+    return Plan(f"{name}: live", arguments, run=name, kind="page")
+
+
+def demo_plan(runs: Path) -> Plan:
+    """The plan of the demo, whose page waits for its user."""
+    arguments = ("demo", "--out", str(runs / DEMO))
+    return Plan("a made-up person, live", arguments, run=DEMO, kind="page")

@@ -1,9 +1,12 @@
 """What a command's lines say of its progress, and how long it will still take."""
 
 import json
+import re
 from typing import Final, NamedTuple
 
 PREFIX: Final = "progress "
+ADDRESS: Final = re.compile(r"http://127\.0\.0\.1:\d+")
+"""A page on this machine."""
 MOST_LINES: Final = 60
 """Lines of a command that are kept, the newest."""
 MOST_LETTERS: Final = 500
@@ -29,6 +32,12 @@ class Progress(NamedTuple):
     def share(self) -> float:
         """Done of all passes, in [0, 1]."""
         return min(1.0, max(0.0, self.done / self.passes))
+
+    @property
+    def address(self) -> str:
+        """Of the command's own page; "" until it tells."""
+        found = (ADDRESS.search(line) for line in self.lines)
+        return next((one[0] for one in found if one), "")
 
     @property
     def fault(self) -> str:

@@ -63,12 +63,8 @@ class Job:
             lines=self.progress.lines,
             told=self.told,
             run=self.plan.run,
-            address=self.plan.address if running and self._answers() else "",
+            address=self.progress.address if running and self.plan.kind == "page" else "",
         )
-
-    def _answers(self) -> bool:
-        """Whether its page is there: it says where, or that it waits for the page."""
-        return any(self.plan.address in line for line in self.progress.lines)
 
 
 class JobQueue:

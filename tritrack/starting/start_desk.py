@@ -4,7 +4,7 @@ import time
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import Final, NamedTuple, get_args
+from typing import Final, NamedTuple
 
 from animator.page.page_server import File
 from animator.start.sections import Got, Hello, Told
@@ -16,7 +16,6 @@ from animator.start.wishes import (
     Chunk,
     Delete,
     Drop,
-    Format,
     Live,
     Look,
     Raise,
@@ -26,6 +25,7 @@ from animator.start.wishes import (
 from common.atomic_file import unwritten
 from common.bus.messages import MOST_VIEWS
 from common.video.decoding import Decoder
+from runtime.store.run_exports import OWN_NAMES
 from tritrack.starting.aside import Aside
 from tritrack.starting.calibration_list import remove_calibration
 from tritrack.starting.job_plan import (
@@ -80,7 +80,7 @@ class StartDesk:
         """The first message to browsers."""
         return Hello(
             runs=str(self._runs),
-            formats=get_args(Format),
+            formats=tuple(OWN_NAMES),
             most_files=MOST_VIEWS,
             most_bytes=MOST_BYTES,
         )

@@ -6,10 +6,11 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
-from animator.start.wishes import Board, Compare, Export, Live, Open, Report, Work
+from animator.start.wishes import Board, Compare, Demo, Export, Live, Open, Report, Work
 from common.bus.messages import MOST_VIEWS
 from common.video.pictures import Source
 from runtime.live.free_ports import free_port
+from runtime.store.run_exports import OWN_NAMES
 from tritrack.machine_cameras.live_settings import live_settings
 from tritrack.starting.calibration_list import calibration_names
 from tritrack.starting.job_plan import (
@@ -20,6 +21,7 @@ from tritrack.starting.job_plan import (
     Plan,
     PlanError,
     board_plan,
+    demo_plan,
     free_name,
     kept_calibration,
     live_plan,
@@ -31,7 +33,7 @@ from tritrack.starting.start_files import SETTINGS
 from tritrack.starting.tray import Facts, shown_tray
 from tritrack.starting.uploads import Upload
 
-Starting = Work | Board | Open | Export | Report | Compare | Live
+Starting = Work | Board | Demo | Open | Export | Report | Compare | Live
 """A wish that a command follows from."""
 
 
@@ -71,9 +73,13 @@ def plan_of(wish: Starting, there: There) -> Plan:
     if isinstance(wish, Board):
         (there.runs / CALIBRATIONS).mkdir(exist_ok=True)
         return board_plan(there.runs, wish.paper)
+    if isinstance(wish, Demo):
+        return demo_plan(there.runs)
     for name in [wish.run, wish.other] if isinstance(wish, Compare) else [wish.run]:
         if run_folder(there.runs, name) is None:
             raise PlanError(f"there is no run {name!r} any more")
+    if isinstance(wish, Export) and wish.to not in OWN_NAMES:
+        raise PlanError(f"there is no format {wish.to!r}: choose one of the list")
     return run_plan(wish, there.runs, free_port())
 
 
@@ -102,4 +108,4 @@ def _plan_of_cameras(wish: Live, there: There) -> Plan:
     file = runs / SETTINGS / f"{name}.toml"
     file.parent.mkdir(exist_ok=True)
     file.write_text(live_settings(sources, port, rig, wish.pictures), "utf-8")
-    return live_plan(file, runs, name, port)
+    return live_plan(file, known, name)

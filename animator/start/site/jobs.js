@@ -20,6 +20,6 @@ function row({ job, title, command, state, share, doing, lines, told, address },
       address ? element("a", { id: `page-${job}`, className: "button", href: address, target: "_blank", rel: "noopener" }, "Open its page") : "",
       over ? "" : button(`cancel-${job}`, address ? "End" : "Cancel", () => link.say({ type: "cancel", job }), { ariaLabel: `${address ? "End" : "Cancel"}: ${title}` })),
     element("div", { style: "grid-column: 1 / -1" }, bar,
-      element("p", { className: state === "failed" ? "bad" : "quiet", role: state === "failed" ? "alert" : "status" }, words),
+      element("p", { className: state === "failed" ? "bad" : state === "done" && told !== "done" && told !== "closed" ? "warn" : "quiet", role: state === "failed" ? "alert" : "status" }, words),
       lines.length ? element("details", { open: isOpen }, element("summary", {}, "what it printed"), element("pre", { tabIndex: 0, ariaLabel: `${title}: what it printed` }, lines.join("\n"))) : ""));
 }

@@ -4,7 +4,7 @@ import { ask, at, button, element, fill, size } from "./parts.js";
 
 const FORMATS = {
   bvh: "BVH: Blender and animation", gltf: "glTF: games and the web", fbx: "FBX: Unity, Unreal, Maya", usd: "USD: film and games", trc: "TRC: OpenSim markers",
-  mot: "MOT: OpenSim angles", c3d: "C3D: movement laboratory", csv: "CSV: spreadsheet",
+  mot: "MOT: OpenSim angles", c3d: "C3D: movement laboratory", csv: "CSV: spreadsheet", angles: "Angles: a table by clinical names",
 };
 
 export function showRuns({ runs, left_out }, hello, link) {
@@ -17,7 +17,7 @@ export function showRuns({ runs, left_out }, hello, link) {
 function row({ name, picture, when, what, frames, believed, notes, files, replay, retouch, others }, old, hello, link) {
   const open = (page, why, words) => button(`${page}-${name}`, words, () => link.say({ type: "open", run: name, page }), { disabled: why !== "", title: why, ariaLabel: `${page} ${name}` });
   const share = believed === null ? "no person believed" : `believed in ${Math.round(100 * believed)} % of the frames with a person`;
-  const format = chooser(`format-${name}`, `format of ${name}`, hello.formats.map((each) => [each, FORMATS[each]]), old);
+  const format = chooser(`format-${name}`, `format of ${name}`, hello.formats.map((each) => [each, FORMATS[each] ?? each.toUpperCase()]), old);
   const other = chooser(`other-${name}`, `run to compare ${name} with`, others.map((each) => [each, each]), old);
   return element("li", { className: "run" },
     picture ? element("img", { src: picture, alt: `a frame of ${name}` }) : element("div", { className: "blank" }),
@@ -34,6 +34,7 @@ function row({ name, picture, when, what, frames, believed, notes, files, replay
           if (await ask(`Delete the run ${name}, its files, and its copy of the videos? This cannot be undone.`)) link.say({ type: "delete", what: "run", name });
         }, { className: "danger", ariaLabel: `delete ${name}` })),
       element("details", { open: old?.querySelector("details:last-of-type")?.open ?? false }, element("summary", {}, `${files.length} files`),
+        ...[["Replay", replay], ["Retouch", retouch]].filter(([, why]) => why).map(([page, why]) => element("p", { className: "quiet" }, `${page}: ${why}`)),
         element("div", { className: "files" }, ...files.map(([address, file, bytes]) => element("a", { href: address, ...(file.endsWith(".html") ? { target: "_blank", rel: "noopener" } : { download: `${name}_${file}` }) }, `${file} (${size(bytes)})`))))));
 }
 

@@ -56,5 +56,6 @@ function connect() {
   });
 }
 
+at("demo").addEventListener("click", () => link.say({ type: "demo" }));
 at("board").addEventListener("click", () => link.say({ type: "board", paper: at("paper").value }));
 connect();
