@@ -41,6 +41,15 @@ def by_ear(clip: Clip, settings: Settings) -> ByEar:
     return ByEar(set_back(clip, by_s), _with_offsets(clip, settings, late_s), late_s)
 
 
+def heard_words(name: str, late_s: Offsets) -> list[str]:
+    """What is said of a clip's delays by ear."""
+    return [
+        f"{name}: view {number} is {late:+.2f} s late: its times were set back by that, as the "
+        "sound tells"
+        for number, late in late_s.items()
+    ]
+
+
 def _heard(clip: Clip, given: Offsets) -> dict[ViewerNumber, float]:
     first, *others = clip.views
     asked = [view for view in others if view.number not in given]

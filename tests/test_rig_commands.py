@@ -62,6 +62,9 @@ def test_a_person_of_the_stature_that_is_typed_calibrates_all_clips(by_clips: Ca
     assert by_clips.last == ([Path("a")], Given(1.75, None))
     assert "not known well enough: focal lengths to 9 % only, clocks: record" in said.output
     assert '"focal_px": 400.0' in said.output
+    word = "a: view 2 is -0.50 s late: its times were set back by that, as the sound tells"
+    by_clips.answer = FoundByClips(RIG, quality(), CLOCKS, (word,))
+    assert word in typed(calibrate_app, "person", "a").output
 
 
 def test_a_view_that_is_late_by_next_to_nothing_is_late_by_plus_nothing(by_clips: Called) -> None:
@@ -201,7 +204,7 @@ def test_what_is_found_is_written_and_what_shows_nothing_is_refused_before(
     written = instead(monkeypatch, "calibration.paper.calibration.write_rig")
     looked = instead(monkeypatch, "common.video.clip_sources.refuse_no_source")
     typed(calibrate_app, "person", "a", "b", "--out", "r.json")
-    rig, quality_told, _ = by_clips.answer
+    rig, quality_told, *_ = by_clips.answer
     assert written.last == (Path("r.json"), rig, quality_told)
     assert [given[1] for given in looked.given] == [Path("a"), Path("b")]
 

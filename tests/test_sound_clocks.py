@@ -16,7 +16,7 @@ from common.video.clip_facts import Clip, ClipView, Meta
 from common.video.clip_sources import offsets_of
 from runtime import sound_clocks
 from runtime.offline.rig_check import clock_facts, clock_words
-from runtime.sound_clocks import by_ear
+from runtime.sound_clocks import by_ear, heard_words
 
 LATE_S = -1.234
 
@@ -104,6 +104,12 @@ def test_what_was_heard_is_said() -> None:
     assert told["clock"]["state"] == "heard"
     assert clock_words(told) == [
         "view 2 is -1.23 s late: its times were set back by that, as the sound tells"
+    ]
+
+
+def test_calibrating_says_what_was_heard_too() -> None:
+    assert heard_words("walk", {2: -0.5}) == [
+        "walk: view 2 is -0.50 s late: its times were set back by that, as the sound tells"
     ]
 
 

@@ -19,7 +19,7 @@ from common.video.decoding import Decoder
 from common.video.frame_cache import FrameCache
 from common.video.pictures import Reader
 from runtime.offline.rig_from_person import believed_clocks, sightings_of
-from runtime.sound_clocks import by_ear
+from runtime.sound_clocks import by_ear, heard_words
 from viewer.landmarks.landmark_sources import outside_sources
 
 
@@ -39,6 +39,8 @@ class FoundByClips(NamedTuple):
     quality: Quality
     clocks: Clocks
     """In each clip, the clocks of the views after the first, one after the other."""
+    heard: tuple[str, ...] = ()
+    """What the videos' sounds tell of their delays, in words: these are set back already."""
 
 
 def calibrated_by_clips(paths: Sequence[Path], given: Given) -> FoundByClips:
@@ -50,12 +52,13 @@ def calibrated_by_clips(paths: Sequence[Path], given: Given) -> FoundByClips:
     """
     method = METHODS["default"]
     films, clocks, sizes = [], [], set()
-    names: list[str] = []
+    names, heard = list[str](), list[str]()
     with ExitStack() as doors:
         decoders: list[Reader] = []
         for path in paths:
             settings = config_file.load(path)
-            clip, settings, _ = by_ear(open_clip(settings), settings)
+            clip, settings, late_s = by_ear(open_clip(settings), settings)
+            heard += heard_words(str(path), late_s)
             names = names or [view.name for view in clip.views]
             _refuse_another_rig(path, clip, names)
             sizes |= {view.source_size for view in clip.views}
@@ -72,7 +75,7 @@ def calibrated_by_clips(paths: Sequence[Path], given: Given) -> FoundByClips:
         raise CalibrationError(f"pictures of several sizes ({told}) are not of one rig")
     found = calibrated_by_all(tuple(films), given.stature_m, given.fov_deg, tuple(clocks))
     rig = fitted(found.rig, sizes.pop(), "the calibration")
-    return FoundByClips(rig, found.quality, found.clocks)
+    return FoundByClips(rig, found.quality, found.clocks, tuple(heard))
 
 
 def _refuse_another_rig(path: Path, clip: Clip, names: Sequence[str]) -> None:

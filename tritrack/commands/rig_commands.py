@@ -60,7 +60,7 @@ def person(
     for path in clips:
         refuse_no_source(config_file.load(path), path)
     refuse_to_replace(out, force)
-    rig, quality, clocks = calibrated_by_clips(clips, Given(stature, fov))
+    rig, quality, clocks, heard = calibrated_by_clips(clips, Given(stature, fov))
     write_rig(out, rig, quality)
     tell_rows(quality.cameras, json_wanted)
     late = ", ".join(
@@ -75,6 +75,8 @@ def person(
         highlight=False,
         soft_wrap=True,
     )
+    for word in heard:
+        console.print(word, highlight=False, soft_wrap=True)
     if quality.unsure:
         console.print(
             f"not known well enough: {', '.join(quality.unsure)}: record a person who walks to "
