@@ -280,7 +280,7 @@ class Told:
 
 
 def job_of(settings: Settings, **more: Any) -> Any:
-    given = {"sources": {}, "watch": None, "course": Course(), **more}
+    given: dict[str, Any] = {"sources": {}, "watch": None, "course": Course(), "heard": {}, **more}
     return lockstep._Job(settings, METHODS["default"], None, **given)  # type: ignore[arg-type]
 
 
@@ -305,6 +305,8 @@ def test_what_is_told_of_the_clock_is_of_the_clip_as_it_was_followed(
     assert result.facts["clock"]["state"] == "given"
     assert [body.confidence for body in result.bodies] == [(0.8,)]
     assert told.asked[-1][-1] is True
+    by_sound = job_of(Settings(offset_s=0.125), heard={2: 0.125})
+    assert lockstep._told(Looked(PAIR), by_sound, done, (left,)).facts["clock"]["state"] == "heard"
 
 
 def test_a_run_that_was_being_tracked_again_goes_on_with_that_clock() -> None:
