@@ -90,6 +90,12 @@ def test_warnings_and_advice_are_shown_once() -> None:
     told = {"warnings": ["dark", "dark"], "trust": {"advice": "camera 2 was moved"}}
     assert notes_of(told) == ("dark", "camera 2 was moved")
     assert notes_of({}) == ()
+    clock = {"state": "found", "applied_s": -1.25, "may_be_on_time": False, "may_be_s": []}
+    assert notes_of({"clock": clock}) == (
+        "view 2 is -1.25 s late: its times were set back by that",
+    )
+    assert notes_of({"clock": {**clock, "applied_s": 0.0, "may_be_on_time": True}}) == ()
+    assert notes_of({"clock": 3, "clocks": "none"}) == ()
 
 
 def test_only_results_and_exports_are_offered(tmp_path: Path) -> None:

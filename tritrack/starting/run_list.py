@@ -19,6 +19,7 @@ from common.config.picture_size import size_of, working_size
 from common.npz_file import Facts
 from common.video.decoding import Decoder
 from common.video.pictures import DecoderDied, Image, Size, Undecodable, Wanted
+from runtime.offline.rig_check import clock_words
 from runtime.store.other_run import RUN_OF
 from runtime.store.past_run import is_run, open_run
 from runtime.store.run_exports import EXPORTS, PAGES
@@ -146,6 +147,8 @@ def notes_of(summary: Mapping[str, Any]) -> tuple[str, ...]:
     notes = [str(each) for each in warnings] if isinstance(warnings, list) else []
     if isinstance(trust, Mapping) and trust.get("advice"):
         notes.append(str(trust["advice"]))
+    with suppress(KeyError, TypeError, ValueError, AttributeError):  # of another make
+        notes += clock_words(dict(summary))
     return tuple(dict.fromkeys(notes))
 
 
