@@ -9,6 +9,7 @@ from common.body.body import Vector
 from common.body.joint_spread import confidence_of
 from integrator.landmarks import (
     front_back_flip,
+    joint_marks,
     left_right_swap,
     limb_springs,
     proposal_offset,
@@ -46,6 +47,8 @@ class Memory(NamedTuple):
     """Residuals of recent proposals against the rays."""
     displaced: Vector
     """(4,) common offset of recent proposals from the rays."""
+    joints_m: NDArray[np.float64]
+    """(12, 3) the joints."""
 
 
 class Fused(NamedTuple):
@@ -68,10 +71,11 @@ def step(
 ) -> Fused:
     """One instant: each joint at its most probable place by the proposal and all views.
 
-    A proposal with front for back, by the views' facings, gets its sides exchanged. Proposals whose
-    recent residuals are large get a wider spread and less confidence; an offset that all their
-    joints share is subtracted. Whether a view exchanged left and right is decided for the arms as a
-    whole and for the legs as a whole. Then limbs are pulled to their lengths.
+    Marks are moved to the joints' centres, by the pose of the instant before. A proposal with front
+    for back, by the views' facings, gets its sides exchanged. Proposals whose recent residuals are
+    large get a wider spread and less confidence; an offset that all their joints share is
+    subtracted. Whether a view exchanged left and right is decided for the arms as a whole and for
+    the legs as a whole. Then limbs are pulled to their lengths.
 
     Args:
         before: The memory of the instant before; None at the first.
@@ -80,6 +84,8 @@ def step(
         rays: Rays of the views' landmarks.
         stature_m: The person's stature.
     """
+    pose_m = proposed_m if before is None else before.joints_m
+    rays, proposed_m = joint_marks.centred(rays, proposed_m, pose_m, stature_m)
     turned = front_back_flip.step(None if before is None else before.turned, proposed_m, rays)
     if turned[1]:
         proposed_m, confidence = proposed_m[OTHER_SIDES], confidence[OTHER_SIDES]
@@ -101,7 +107,7 @@ def step(
     if lengths_m is not None:
         joints_m = limb_springs.sprung(joints_m, tight, lengths_m)
     lengths_m = limb_springs.lengths_m(lengths_m, joints_m, stature_m)
-    memory = Memory(turned, exchanges, decided, lengths_m, misfit, displaced)
+    memory = Memory(turned, exchanges, decided, lengths_m, misfit, displaced, joints_m)
     return Fused(joints_m, _confidence(tight), decided, memory)
 
 
