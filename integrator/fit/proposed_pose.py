@@ -13,7 +13,7 @@ from common.method import Method
 from common.rig.camera import Rig
 from integrator.fit import visual_hull
 from integrator.fit.silhouette_pair import poorest
-from integrator.landmarks import landmark_fusion
+from integrator.landmarks import joint_marks, landmark_fusion
 from integrator.landmarks.landmark_rays import rays_of
 from integrator.measuring.prior_body import prior
 from integrator.proposal import pose_proposal
@@ -104,8 +104,9 @@ def _with_landmarks(
     rays = rays_of(now.rig, now.seen)
     if rays is None:
         return known, before.landmarks
-    sure = known.confidence[pose_proposal.AT]
-    fused = landmark_fusion.step(before.landmarks, known.joints_m, sure, rays, stature(now.bdp))
+    sure, stature_m = known.confidence[pose_proposal.AT], stature(now.bdp)
+    joints_m, rays = joint_marks.centred(before.landmarks, known.joints_m, rays, stature_m)
+    fused = landmark_fusion.step(before.landmarks, joints_m, sure, rays, stature_m)
     confidence = pose_proposal.of_landmarks(fused.confidence)
     return known._replace(joints_m=fused.joints_m, confidence=confidence), fused.memory
 

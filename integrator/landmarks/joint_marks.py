@@ -11,6 +11,7 @@ import numpy as np
 
 from common.body.body import Floats, Vector
 from common.compiled import compiled
+from integrator.landmarks.landmark_fusion import Memory
 from integrator.landmarks.landmark_rays import Rays
 from integrator.pose.inverse_kinematics import trunk_of
 from integrator.proposal.network_weights import JOINTS
@@ -39,24 +40,25 @@ _ANKLES: Final = JOINTS.index("l_ankle")
 
 
 def centred(
-    rays: Rays, proposed_m: Floats, pose_m: Floats, stature_m: float
-) -> tuple[Rays, Floats]:
-    """Rays through the joints' centres, and the proposed joints (12, 3) without their bias.
+    before: Memory | None, proposed_m: Floats, rays: Rays, stature_m: float
+) -> tuple[Floats, Rays]:
+    """The proposed joints (12, 3), and rays, without their offsets from the joints' centres.
 
     Args:
-        rays: Rays of the views' landmarks.
+        before: The fusion's memory: the pose of the instant before decides the offsets, at the
+            first instant the proposed one.
         proposed_m: (12, 3) world, of JOINTS.
-        pose_m: (12, 3) the joints of the instant before, whose pose decides the offsets; at the
-            first instant the proposed ones.
+        rays: Rays of the views' landmarks.
         stature_m: The person's stature.
     """
+    pose_m = proposed_m if before is None else before.joints_m
     beside_m = stature_m * bent(pose_m, *PROPOSED_INSIDE)
     marked_m = stature_m * marks(pose_m)
     away_m = np.linalg.norm(proposed_m - rays.centres_m[:, None], axis=2)[..., None]
-    return rays._replace(
+    return proposed_m - beside_m, rays._replace(
         directions=_through(rays.directions, away_m, marked_m),
         others=_through(rays.others, away_m, marked_m),
-    ), proposed_m - beside_m
+    )
 
 
 def _through(directions: Floats, away_m: Floats, marked_m: Floats) -> Floats:

@@ -9,7 +9,6 @@ from common.body.body import Vector
 from common.body.joint_spread import confidence_of
 from integrator.landmarks import (
     front_back_flip,
-    joint_marks,
     left_right_swap,
     limb_springs,
     proposal_offset,
@@ -71,21 +70,18 @@ def step(
 ) -> Fused:
     """One instant: each joint at its most probable place by the proposal and all views.
 
-    Marks are moved to the joints' centres, by the pose of the instant before. A proposal with front
-    for back, by the views' facings, gets its sides exchanged. Proposals whose recent residuals are
-    large get a wider spread and less confidence; an offset that all their joints share is
-    subtracted. Whether a view exchanged left and right is decided for the arms as a whole and for
-    the legs as a whole. Then limbs are pulled to their lengths.
+    A proposal with front for back, by the views' facings, gets its sides exchanged. Proposals whose
+    recent residuals are large get a wider spread and less confidence; an offset that all their
+    joints share is subtracted. Whether a view exchanged left and right is decided for the arms as a
+    whole and for the legs as a whole. Then limbs are pulled to their lengths.
 
     Args:
         before: The memory of the instant before; None at the first.
         proposed_m: (12, 3) world, of JOINTS.
         confidence: (12,) probability that each is less than 50 mm off.
-        rays: Rays of the views' landmarks.
+        rays: Rays of the views' landmarks, through the joints' centres.
         stature_m: The person's stature.
     """
-    pose_m = proposed_m if before is None else before.joints_m
-    rays, proposed_m = joint_marks.centred(rays, proposed_m, pose_m, stature_m)
     turned = front_back_flip.step(None if before is None else before.turned, proposed_m, rays)
     if turned[1]:
         proposed_m, confidence = proposed_m[OTHER_SIDES], confidence[OTHER_SIDES]

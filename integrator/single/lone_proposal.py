@@ -11,7 +11,7 @@ from common.body.observation import Observation
 from common.body.stick_body import SHOULDERS_BELOW
 from common.bus.messages import Lifting
 from common.rig.camera import Camera, centre, ray
-from integrator.landmarks import landmark_fusion
+from integrator.landmarks import joint_marks, landmark_fusion
 from integrator.landmarks.landmark_rays import rays_of
 from integrator.proposal import pose_network, pose_proposal
 from integrator.proposal.pose_proposal import HEAD, NECK, PELVIS
@@ -119,7 +119,8 @@ def _with_landmarks(
         rays = rays._replace(facing_confidence=(0.0, 0.0))
     at = pose_proposal.AT
     beside = confidence[at] ** BESIDE
-    fused = landmark_fusion.step(before.landmarks, joints_m[at], beside, rays, sight.stature_m)
+    proposed_m, rays = joint_marks.centred(before.landmarks, joints_m[at], rays, sight.stature_m)
+    fused = landmark_fusion.step(before.landmarks, proposed_m, beside, rays, sight.stature_m)
     sure = pose_proposal.of_landmarks(fused.confidence * confidence[at] / beside)
     return _with_trunk(sight, fused.joints_m), sure, fused.memory
 
