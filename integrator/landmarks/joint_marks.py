@@ -1,7 +1,8 @@
 """Where pictures mark a joint beside its centre, by the pose: marks moved to the centres.
 
-A shoulder's mark stays on the outline while the joint sinks with a hanging arm; a knee's is the
-kneecap, an ankle's the outer ankle. A bent limb is seen straighter than it is.
+A shoulder's mark stays on the silhouette's edge while the joint sinks with a hanging arm; a hip's
+is below it, a knee's the kneecap, an ankle's the outer ankle. A bent limb is seen straighter than
+it is.
 """
 
 import math
@@ -21,6 +22,9 @@ SHOULDER_UP: Final = (0.004, 0.0145)
 where the arm hangs (less where it points up). These and all offsets below are in statures; read
 from 4 performers and synthetic people (docs/measurements.md)."""
 SHOULDER_BACK: Final = 0.006
+HIP_BELOW, HIP_RISES = 0.008, 0.013
+"""Height of a hip's mark below the joint's centre where the thigh hangs, and its rise where it
+points to the front: people mark the crease."""
 KNEE_FRONT: Final = 0.005
 """Offset of a straight knee's mark to the front; a right angle has none."""
 KNEE_OUT, ANKLE_OUT = 0.005, 0.005
@@ -79,21 +83,35 @@ def marks(joints_m: Floats) -> Floats:
     trunk = trunk_of(joints_m)
     up, front = trunk[:, 1], trunk[:, 2]
     for side in range(2):
-        left = trunk[:, 0] * (1.0 - 2.0 * side)
         arm = _unit(joints_m[_ELBOWS + side] - joints_m[_SHOULDERS + side])
-        hangs = -(arm * up).sum()
-        beside[_SHOULDERS + side] += (SHOULDER_UP[0] + SHOULDER_UP[1] * hangs) * up
+        raised = (arm * up).sum()
+        beside[_SHOULDERS + side] += (SHOULDER_UP[0] - SHOULDER_UP[1] * raised) * up
         beside[_SHOULDERS + side] -= SHOULDER_BACK * front
-        hip, knee = joints_m[_HIPS + side], joints_m[_KNEES + side]
-        thigh, shank = _unit(knee - hip), _unit(joints_m[_ANKLES + side] - knee)
-        along = _unit(thigh + shank)
-        before = _unit(front - (front * along).sum() * along)
-        outside = _unit(np.cross(along, before))
-        outside *= 1.0 if (outside * left).sum() > 0.0 else -1.0
-        straight = max(0.0, 1.0 - math.sqrt(((thigh - shank) ** 2).sum()))
-        beside[_KNEES + side] += KNEE_FRONT * straight * before + KNEE_OUT * outside
-        beside[_ANKLES + side] += ANKLE_OUT * outside
+        _mark_leg(joints_m, trunk, side, beside)
     return beside
+
+
+@compiled
+def _mark_leg(joints_m: Floats, trunk: Floats, side: int, beside: Floats) -> None:
+    """Add the offsets of a leg's marks, but for its bend's.
+
+    Args:
+        joints_m: (12, 3) the joints.
+        trunk: (3, 3) columns: left, up, front.
+        side: 0: left, 1: right.
+        beside: (12, 3) the offsets so far.
+    """
+    up, front = trunk[:, 1], trunk[:, 2]
+    hip, knee, ankle = joints_m[_HIPS + side], joints_m[_KNEES + side], joints_m[_ANKLES + side]
+    thigh, shank = _unit(knee - hip), _unit(ankle - knee)
+    beside[_HIPS + side] += (HIP_RISES * max(0.0, (thigh * front).sum()) - HIP_BELOW) * up
+    along = _unit(thigh + shank)
+    before = _unit(front - (front * along).sum() * along)
+    out = trunk[:, 0] - (trunk[:, 0] * along).sum() * along
+    out = (1.0 - 2.0 * side) * _unit(out - (out * before).sum() * before)
+    straight = max(0.0, 1.0 - math.sqrt(((thigh - shank) ** 2).sum()))
+    beside[_KNEES + side] += KNEE_FRONT * straight * before + KNEE_OUT * out
+    beside[_ANKLES + side] += ANKLE_OUT * out
 
 
 @compiled
