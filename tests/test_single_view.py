@@ -26,7 +26,7 @@ from common.method import DEFAULT, METHODS
 from common.notes.notes import Orientation
 from common.raster.silhouette_report import pack
 from common.rig.camera import as_matrix, centre, paper_rig, project
-from integrator.landmarks import landmark_fusion
+from integrator.landmarks import joint_marks, landmark_fusion
 from integrator.proposal import pose_proposal
 from integrator.single import (
     bent_limbs,
@@ -416,7 +416,8 @@ def test_what_the_picture_shows_is_joined_with_a_proposal_that_is_sure_in_the_pi
     shown = Landmarks(tuple((x, y) for x, y in shown_px), (0.9,) * 15, 20.0, 0.95)
     person = msgspec.structs.replace(seen_as(ADULT), landmarks=shown)
     sight = sight_of(person, printed=False)
-    remembered: Any = "kept"
+    own_m = body.joints_m[pose_proposal.AT]
+    remembered: Any = SimpleNamespace(joints_m=own_m)
     before = lone_proposal.Before(None, Front() if knows_front else None, remembered, None)
     confidence = np.linspace(0.2, 0.8, 15)
     joints_m, found, memory = lone_proposal._with_landmarks(
@@ -426,7 +427,8 @@ def test_what_the_picture_shows_is_joined_with_a_proposal_that_is_sure_in_the_pi
     own = confidence[pose_proposal.AT]
     assert kept == remembered
     assert memory == joined().memory
-    assert proposed_m == pytest.approx(body.joints_m[pose_proposal.AT])
+    inside_m = 1.75 * joint_marks.bent(own_m, *joint_marks.PROPOSED_INSIDE)
+    assert proposed_m == pytest.approx(own_m - inside_m)
     assert beside == pytest.approx(own ** (1 / 3))
     assert stature_m == pytest.approx(1.75)
     assert rays.facing_confidence == ((0.0, 0.0) if knows_front else (0.95, 0.0))
