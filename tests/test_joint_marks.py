@@ -124,10 +124,12 @@ def remembered(joints_m: np.ndarray) -> landmark_fusion.Memory:
 def test_rays_through_the_marks_of_a_body_are_moved_through_its_joints(yaw_deg: float) -> None:
     true_m = walking(yaw_deg)
     seen = rays_at(true_m + STATURE_M * joint_marks.marks(true_m))
+    seen = seen._replace(others=seen.directions)
     proposed_m = true_m + STATURE_M * joint_marks.bent(true_m, *joint_marks.PROPOSED_INSIDE)
     found_m, moved = joint_marks.centred(remembered(true_m), proposed_m, seen, STATURE_M)
     np.testing.assert_allclose(found_m, true_m, atol=1e-9)
     assert off_m(moved, true_m).max() < 1e-3
+    np.testing.assert_array_equal(moved.others, moved.directions)
     assert off_m(seen, true_m).max() > 0.03
 
 
