@@ -24,8 +24,9 @@ settings.load_profile("untimed")
 
 MARKS: Final = ("slow", "live")
 LONGEST: Final = (
-    *("readme", "system_wheel", "system_namespaces", "resuming"),
-    *("landmark_network", "system_live_fallback", "board_rig"),
+    *("readme", "system_wheel", "system_namespaces", "system_live_fallback"),
+    *("person_calibration", "resuming", "performance", "landmark_network", "board_rig"),
+    *("system_commands", "lockstep", "live", "marking"),
 )
 """Files that take minutes: begun first, so that none is left alone at the end."""
 
