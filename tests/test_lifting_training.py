@@ -12,7 +12,13 @@ from rich.console import Console
 
 from integrator.proposal import lifting_network
 from integrator.proposal.landmark_look import INPUTS, Look
-from integrator.proposal.network_weights import LiftingNetwork, load, shipped_lifting
+from integrator.proposal.network_weights import (
+    LiftingNetwork,
+    from_bfloat16,
+    load,
+    shipped_lifting,
+)
+from integrator.proposal.pose_network import recurrent_step
 from lab.training import lifting_training, network_training, torch_network
 from lab.training.lifting_examples import LiftingExample, lifting_examples
 from lab.training.lifting_training import learnt, train_lifting
@@ -65,8 +71,32 @@ def test_learning_without_pytorch_says_what_to_install(
 
 
 @pytest.mark.slow
+def test_pytorchs_recurrent_unit_and_ours_have_the_same_memory() -> None:
+    torch = pytest.importorskip("torch", reason="learning needs the extra `train`")
+    n, random = shipped_lifting(), np.random.default_rng(5)
+    inputs = random.normal(0, 1, (9, INPUTS)).astype(np.float32)
+    unit = torch.nn.GRU(len(n.gru_ih), len(n.gru_hh), batch_first=True)
+    unit.load_state_dict(
+        {
+            "weight_ih_l0": torch.tensor(from_bfloat16(n.gru_ih).T),
+            "weight_hh_l0": torch.tensor(from_bfloat16(n.gru_hh).T),
+            "bias_ih_l0": torch.tensor(n.gru_ih_bias),
+            "bias_hh_l0": torch.tensor(n.gru_hh_bias),
+        }
+    )
+    hidden = np.maximum(inputs @ from_bfloat16(n.fc1) + n.fc1_bias, 0.0)
+    hidden = np.maximum(hidden @ from_bfloat16(n.fc2) + n.fc2_bias + hidden, 0.0)
+    theirs = unit(torch.tensor(hidden)[None])[0][0].detach().numpy()
+    memory, ours = np.zeros(len(n.gru_hh), np.float32), []
+    for one in inputs:
+        memory, _ = recurrent_step(n, memory, one)
+        ours.append(memory)
+    assert np.abs(theirs).max() > 0.1
+    assert np.array(ours) == pytest.approx(theirs, abs=1e-4)
+
+
+@pytest.mark.slow
 def test_what_is_learnt_beats_the_mean_pose() -> None:
-    """Also: PyTorch's unit and ours agree, or the memory would say something else."""
     pytest.importorskip("torch", reason="learning needs the extra `train`")
     taught = [one for seed in range(30) for one in lifting_examples(seed)]
     network = learnt(taught, 3, QUIET, rounds=[Round(10, 3e-3, 8)])

@@ -63,7 +63,6 @@ def test_learning_without_pytorch_says_what_to_install(
 
 @pytest.mark.slow
 def test_what_is_learnt_beats_the_mean_pose() -> None:
-    """Also: PyTorch's unit and ours agree, or the memory would say something else."""
     pytest.importorskip("torch", reason="learning needs the extra `train`")
     taught = [example_of((seed, ORDINARY)) for seed in range(48)]
     network = learnt(taught, 3, QUIET, rounds=[Round(20, 2e-3, 8)])
