@@ -231,7 +231,7 @@ def bridge(
     keys: Annotated[str, typer.Option(help="Folder of a client's keys, for a tls endpoint.")] = "",
     json_wanted: JsonWanted = False,
 ) -> None:
-    """Send live poses and postures by OSC, VMC, LSL or WebSocket.
+    """Send poses and postures by OSC, VMC, LSL or WebSocket.
 
     It waits for the run, a minute at most, and ends with it. LSL is the Lab Streaming Layer.
 
