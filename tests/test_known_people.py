@@ -7,8 +7,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from animator import scene
 from common.body.body import JOINT_NAMES
 from common.body.observation import Landmarks
+from common.bus.messages import MOST_PEOPLE
+from integrator.people import recognition
+from recognizer import everyone
 from viewer.people.known_people import (
     GRACE_S,
     PEOPLE,
@@ -68,9 +72,16 @@ def test_the_largest_of_new_people_is_followed() -> None:
 def test_no_more_people_are_known_than_the_bound() -> None:
     looks = [Look(None, person(100.0 * at)) for at in range(PEOPLE + 2)]
     people, given_ = step(People(), 0.0, looks)
-    assert sorted(n for n in given_ if n is not None) == [0, 1, 2]
+    assert sorted(n for n in given_ if n is not None) == [0, 1, 2, 3, 4]
     assert given_.count(None) == 2
     assert people.fresh == PEOPLE
+
+
+def test_as_many_people_as_a_scene_has_are_known_to_viewers_integrator_recogniser_and_page() -> (
+    None
+):
+    """One more is known to the integrator, who is out of sight and may come back."""
+    assert PEOPLE == MOST_PEOPLE < recognition.MOST <= min(everyone.MOST, len(scene.PEOPLE))
 
 
 def test_two_people_who_pass_each_other_keep_their_numbers() -> None:

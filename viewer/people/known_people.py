@@ -7,10 +7,12 @@ import numpy as np
 
 from common.body.body import JOINT_NAMES, Floats
 from common.body.observation import Landmarks, Pixel
+from common.bus.messages import MOST_PEOPLE
 from viewer.landmarks.own_landmarks import COUNTS, LEAST
 
-PEOPLE: Final = 3
-"""Upper bound of the number of people that a viewer knows at once."""
+PEOPLE: Final = MOST_PEOPLE
+"""Upper bound of the number of people that a viewer knows at once: each takes a look of the network
+of landmarks in each frame."""
 GRACE_S: Final = 1.0
 """Time after which a person who is not seen is no longer known, seconds."""
 NEAR: Final = 0.15
