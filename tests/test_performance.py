@@ -19,7 +19,7 @@ from common.config.settings import Settings
 from common.method import DEFAULT, Mode
 from common.video.clip_facts import Clip, ClipView, Meta
 from integrator import merge_state
-from integrator.people import several
+from integrator.people import recognition
 from integrator.people.lived_instant import Merged
 from runtime.offline import performance
 from runtime.offline.lockstep import Decoders, track_clip
@@ -136,7 +136,7 @@ def prepared() -> Prepared:
     views = tuple(ClipView(n, f"cam{n}.avi", (160, 120), (160, 120), 15.0, FRAMES) for n in VIEWS)
     clip = Clip("made up", views, 1, RIG, Meta())
     state = merge_state.init(RIG, PERIOD_S, Settings(), DEFAULT)
-    return Prepared(clip, {}, {1: 100, 2: 200}, several.State(state), [], 0.0)  # type: ignore[dict-item]
+    return Prepared(clip, {}, {1: 100, 2: 200}, recognition.State(state), [], 0.0)  # type: ignore[dict-item]
 
 
 @pytest.fixture
@@ -240,7 +240,9 @@ def test_each_of_several_people_is_evidence_where_no_other_is_close(
     merged = Merged(bodies, Guide(frames=(0, 0), **moment), each[0], each)
     reports = {1: first[0], 2: second[0]}
     found = performance.evidence(reports, merged)
-    assert [(body.person, sorted(own)) for body, own in found] == [(1, views), (2, views)]
+    shown = [[n for n, view in own.items() if view.people] for _, own in found]
+    assert ([body.person for body, _ in found], shown) == ([1, 2], [views, views])
+    assert all(sorted(own) == [1, 2] for _, own in found), "a view without them is one all the same"
     assert [own[1].people[0].track for _, own in found] == [3, 4]
     alone = Merged(bodies[:1], merged.guide, each[0])
     assert performance.evidence(reports, alone) == [(bodies[0], reports)]

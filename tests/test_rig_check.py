@@ -247,6 +247,13 @@ def test_each_person_is_evidence_of_their_own_whoever_was_seen_longest_first() -
     assert [len(seen.tracks[0].times_s) for seen in each] == [8, 4]
 
 
+def test_who_was_never_seen_in_a_view_is_no_evidence_and_no_error() -> None:
+    clip, witness = msgspec.structs.replace(two_views(), rig=RIG), Witness()
+    for n in range(3):
+        witness({}, {2: seen_at(2, n / 10)}, body_with())
+    assert trust_facts(clip, witness, (Clock(0.0),), insisted=False) == {}
+
+
 @pytest.mark.parametrize(
     ("believe", "believed", "instants"),
     [

@@ -7,6 +7,8 @@ from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import contextmanager
 from typing import Final, NamedTuple
 
+import msgspec
+
 from common.bus.instant import instant_of
 from common.bus.messages import Body, Guide, View, ViewerNumber
 from common.video.clip_facts import Clip
@@ -176,14 +178,17 @@ def evidence(reports: dict[int, View], merged: Merged) -> list[tuple[Body, dict[
     of two who are close one view may have shown the other for a moment."""
     if len(merged.bodies) == 1:
         return [(merged.bodies[0], reports)]
-    found = []
-    for body, own in zip(merged.bodies, merged.of_each, strict=True):
-        shown = {n: own.views[n - 1] for n in reports}
-        apart = {
-            n: view for n, view in shown.items() if view is not None and _is_apart(view, reports[n])
-        }
-        found.append((body, apart))
-    return found
+    return [
+        (body, {n: _alone(own.views[n - 1], report) for n, report in reports.items()})
+        for body, own in zip(merged.bodies, merged.of_each, strict=True)
+    ]
+
+
+def _alone(own: View | None, whole: View) -> View:
+    """A person's view; without people where another is close to them."""
+    if own is not None and _is_apart(own, whole):
+        return own
+    return msgspec.structs.replace(whole, people=())
 
 
 def _is_apart(own: View, whole: View) -> bool:

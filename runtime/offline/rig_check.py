@@ -131,7 +131,7 @@ def trust_facts(
     everyone = [
         seen
         for seen in witness.sightings(clip)
-        if any(len(track.times_s) >= 2 for track in seen.tracks[1:])
+        if len(seen.tracks[0].times_s) and any(len(track.times_s) >= 2 for track in seen.tracks[1:])
     ]
     if clip.rig is None or not everyone:
         return {}
