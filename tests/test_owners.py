@@ -6,6 +6,7 @@ import pytest
 from crowd_of_two import BLUE, LEFT_M, RED, RIGHT_M, pose_at, shown
 from staging import PERIOD_S, PERSON, RIG
 
+from common.body.clothes import colour_distance
 from common.body.kinematics import joints
 from common.body.observation import Observation
 from common.body.proportions import body_vector
@@ -28,7 +29,6 @@ from integrator.people.sight_gaps import (
     INSTANTS,
     Gap,
     People,
-    colour_distance,
     with_instant,
 )
 

@@ -6,7 +6,7 @@ import pytest
 from staging import RIG
 from two_people import first_m, other_m, seen
 
-from common.body.observation import Observation
+from common.body.observation import Box, Observation
 from integrator.rig.person_choice import chosen, costs_of
 
 FIRST_M = np.array([0.0, 0.9, 0.0])
@@ -32,21 +32,31 @@ def test_people_whose_sight_lines_meet_are_one_person_whatever_their_order() -> 
     assert choice([(TWO[0],), (ONE[1], TWO[1])]) == (0, 1)
 
 
-def high(person: Observation, px: int) -> Observation:
-    box = msgspec.structs.replace(person.box, bottom=person.box.top + px - 1)
+def sized(person: Observation, high_px: int, left_px: int) -> Observation:
+    box = Box(left_px, left_px + 9, 10, 9 + high_px)
     return msgspec.structs.replace(person, box=box)
 
 
-@pytest.mark.parametrize(("highs_px", "found"), [((40, 40), 0), ((36, 40), 0), ((30, 40), 1)])
-def test_where_no_person_is_expected_the_larger_comes_before_the_one_whom_the_viewers_follow(
-    highs_px: tuple[int, int], found: int
+MIDDLE_PX, SIDE_PX = 75, 10
+"""Columns of a picture 160 wide."""
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "found"),
+    [
+        ((40, MIDDLE_PX), (40, MIDDLE_PX), 0),
+        ((36, MIDDLE_PX), (40, MIDDLE_PX), 0),
+        ((30, MIDDLE_PX), (40, MIDDLE_PX), 1),
+        ((50, SIDE_PX), (40, MIDDLE_PX), 1),
+        ((80, SIDE_PX), (40, MIDDLE_PX), 0),
+    ],
+)
+def test_where_no_person_is_expected_it_is_the_larger_above_all_in_the_middle_of_the_pictures(
+    first: tuple[int, int], second: tuple[int, int], found: int
 ) -> None:
-    """In both views together; of two about as large it is whom the viewers follow."""
-    pairs = zip(
-        *[[high(each, px) for each in one] for one, px in zip((TWO, ONE), highs_px, strict=True)],
-        strict=True,
-    )
-    assert choice(list(pairs)) == (found, found)
+    """In both views; of two about as large it is whom the viewers follow."""
+    people = [(sized(TWO[n], *first), sized(ONE[n], *second)) for n in (0, 1)]
+    assert choice(people) == (found, found)
 
 
 @pytest.mark.parametrize(("expected_m", "found"), [(FIRST_M, (1, 1)), (OTHER_M, (0, 0))])

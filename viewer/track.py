@@ -23,6 +23,7 @@ from viewer.captured_frame import CapturedFrame
 from viewer.expected_body import expected_body
 from viewer.landmarks.person_mask import LandmarkResult, Shown
 from viewer.paper import pose_search
+from viewer.people import worn_clothes
 from viewer.people.known_people import forgotten, of_one
 from viewer.people.observed_people import everyone
 from viewer.people.openings import with_opening, with_openings
@@ -178,6 +179,8 @@ def look(state: State, frame: CapturedFrame, guide: Guide | None) -> tuple[State
         )
     seen = held.seen
     people = everyone(remembered, frame.picture, seen, shown, least_share)
+    known_now, people = worn_clothes.step(known.people, people)
+    known = known._replace(people=known_now)
     if shown.followed.landmarks is None and shown.others and not setup.is_placed:
         people = ()
     view = _view_of(setup.viewer, frame, seen, people)

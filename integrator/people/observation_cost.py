@@ -7,10 +7,10 @@ from typing import Final
 import numpy as np
 
 from common.body.body import Vector
+from common.body.clothes import colour_distance
 from common.body.observation import Observation
 from common.rig.camera import Camera, project
 from integrator.people.known_life import Life, Places
-from integrator.people.sight_gaps import colour_distance
 
 NEAR_M: Final = 0.5
 """Distance in a picture, at the person's depth, from which on an observation is not of a person who

@@ -7,6 +7,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from calibration.gate.sight_clash import MEETS_M
+from common.body.clothes import TAKEN, colour_distance, exchange_gain
 from common.body.observation import Observation
 from common.rig.camera import Rig
 from integrator.belief import NOBODY
@@ -17,7 +18,6 @@ from integrator.people.sight_gaps import (
     Gap,
     People,
     Place,
-    colour_distance,
     sight_gap_m,
 )
 
@@ -27,11 +27,6 @@ WRONG_M: Final = 0.02
 """By how much another's gap must be smaller for two observations not to be of one person."""
 SURE_AFTER: Final = 5
 """Number of instants after which such a mean contradicts what was taken for one person."""
-TAKEN: Final = 0.4
-"""By how much nearer two people's colours are to each other's clothes than to their own, in what
-these differ, where they were taken for each other."""
-ALIKE: Final = 0.1
-"""Difference of colours below which clothes do not distinguish people."""
 
 
 class Group(NamedTuple):
@@ -113,7 +108,7 @@ def exchanged(
     found = []
     for (i, one), (j, other) in combinations(enumerate(known), 2):
         better = [
-            _exchange_gain(lives[i], lives[j], people[view][a], people[view][b], view)
+            _gain((lives[i], lives[j]), (people[view][a], people[view][b]), view)
             for view, (a, b) in enumerate(zip(one, other, strict=True))
             if a >= 0 and b >= 0
         ]
@@ -122,18 +117,9 @@ def exchanged(
     return found
 
 
-def _exchange_gain(
-    one: Life, other: Life, first: Observation, second: Observation, view: int
-) -> float:
-    """By how much nearer two observations' colours are to the other person's than to their own, in
-    what these differ: 1 of two who were taken for each other, -1 else; 0 where they are alike."""
-    mine, theirs = one.colours_in(view), other.colours_in(view)
-    between = colour_distance(mine, theirs)
-    if between < ALIKE:
-        return 0.0
-    own = colour_distance(mine, first.colours) + colour_distance(theirs, second.colours)
-    others = colour_distance(mine, second.colours) + colour_distance(theirs, first.colours)
-    return (own - others) / (2.0 * between)
+def _gain(lives: tuple[Life, Life], seen: tuple[Observation, Observation], view: int) -> float:
+    mine, theirs = (life.colours_in(view) for life in lives)
+    return exchange_gain(mine, theirs, *(each.colours for each in seen))
 
 
 def _assigned(costs: np.ndarray) -> list[tuple[int, int]]:

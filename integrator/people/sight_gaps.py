@@ -7,13 +7,12 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from calibration.gate.sight_clash import gap_m
+from common.body.clothes import colour_distance
 from common.body.observation import Observation
 from common.rig.camera import Rig
 
-COLOUR_SCALE: Final = 40.0
-"""Such a difference, in units of L*a*b*."""
 GAP_COLOUR_M: Final = 0.05
-"""What such a difference adds to the gap between two views' sight lines, metres."""
+"""What a difference of colours of 1 adds to the gap between two views' sight lines, metres."""
 INSTANTS: Final = 15
 """Number of instants of which gaps are the running mean."""
 
@@ -81,14 +80,6 @@ def sight_gap_m(rig: Rig, people: People, one: Place, other: Place) -> float:
     """Median gap between the sight lines of two observations, metres; NaN where it is not known."""
     cameras = rig.cameras[one[0]], rig.cameras[other[0]]
     return gap_m(cameras, people[one[0]][one[1]], people[other[0]][other[1]])
-
-
-def colour_distance(one: Sequence[float], other: Sequence[float]) -> float:
-    """Difference of two people's colours; 0 where one is not known."""
-    if not one or not other:
-        return 0.0
-    off = np.subtract(one, other).reshape(-1, 3)
-    return float(np.linalg.norm(off, axis=1).mean()) / COLOUR_SCALE
 
 
 def track_of(people: People, place: Place) -> tuple[int, int]:

@@ -27,8 +27,10 @@ two views show costs more than views that clash about the expected one."""
 LATER_COST: Final = 0.25
 """Cost of a person whom the viewer does not follow."""
 SMALL_COST: Final = 2.0
-"""Cost of a person of no height, beside the tallest of the view, where none is expected; it falls
-with the height."""
+"""Cost of a person of no size, beside the largest of the view, where none is expected; it falls
+with the size."""
+ASIDE: Final = 0.5
+"""Share of their height by which a person at a picture's side is smaller: who passes begins there."""
 
 
 def costs_of(camera: Camera, people: People, expected_m: Vector | None) -> list[float]:
@@ -43,8 +45,8 @@ def costs_of(camera: Camera, people: People, expected_m: Vector | None) -> list[
     if not people:
         return costs
     if expected_m is None:
-        highs = [person.box.bottom + 1 - person.box.top for person in people]
-        small = [1.0 - high / max(highs) for high in highs]
+        sizes = [_size(person) for person in people]
+        small = [1.0 - size / max(sizes) for size in sizes]
         return [cost + SMALL_COST * each for cost, each in zip(costs, small, strict=True)]
     at_px = project(camera, expected_m[None])[0]
     away = [_away_heights(person, at_px) for person in people]
@@ -101,6 +103,13 @@ def _gap_cost(rig: Rig, people: Sequence[People], one: One, other: One) -> float
     cameras = rig.cameras[one[0]], rig.cameras[other[0]]
     apart_m = gap_m(cameras, people[one[0]][one[1]], people[other[0]][other[1]])
     return UNKNOWN_COST if np.isnan(apart_m) else GAP_COST * min(apart_m / CLASHES_M, 1.0) ** 2
+
+
+def _size(person: Observation) -> float:
+    """A person's height in the picture, pixels; less at its sides than in its middle."""
+    box, half_px = person.box, 0.5 * person.width
+    aside = abs(0.5 * (box.left + box.right + 1) - half_px) / half_px
+    return (box.bottom + 1 - box.top) * (1.0 - ASIDE * aside)
 
 
 def _away_heights(person: Observation, at_px: Vector) -> float:

@@ -45,6 +45,16 @@ class Track(NamedTuple):
     """Capture time of that."""
 
 
+class Clothes(NamedTuple):
+    """The colours of a person's clothes."""
+
+    number: int
+    colours: tuple[float, ...]
+    """Running mean of `Observation.colours`."""
+    frames: int
+    """Number of frames in it."""
+
+
 class People(NamedTuple):
     """What one frame hands to the next."""
 
@@ -53,6 +63,8 @@ class People(NamedTuple):
     """The number of the followed person; where no person is known, of the next one."""
     fresh: int = 1
     """The next number that no person has had."""
+    clothes: tuple[Clothes, ...] = ()
+    """Of the people whose clothes were seen, by number."""
 
     @property
     def person(self) -> Track | None:
@@ -131,7 +143,7 @@ def step(
     tracks = tuple(Track(number, landmarks, at_s) for number, landmarks in seen.items())
     out_of_sight = (track for track in people.tracks if track.number not in seen)
     tracks += tuple(track for track in out_of_sight if at_s - track.seen_s <= GRACE_S)
-    after = People(tuple(sorted(tracks)), people.followed, fresh)
+    after = people._replace(tracks=tuple(sorted(tracks)), fresh=fresh)
     return _with_followed(after, bool(people.tracks)), tuple(numbers)
 
 
