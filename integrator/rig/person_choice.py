@@ -30,7 +30,7 @@ SMALL_COST: Final = 2.0
 """Cost of a person of no size, beside the largest of the view, where none is expected; it falls
 with the size."""
 ASIDE: Final = 0.5
-"""Share of their height by which a person at a picture's side is smaller: who passes begins there."""
+"""Share of the height by which a person at a picture's side counts as smaller: there people pass."""
 
 
 def costs_of(camera: Camera, people: People, expected_m: Vector | None) -> list[float]:
