@@ -55,7 +55,9 @@ def test_where_no_person_is_expected_it_is_the_larger_above_all_in_the_middle_of
     first: tuple[int, int], second: tuple[int, int], found: int
 ) -> None:
     """In both views; of two about as large it is whom the viewers follow."""
-    people = [(sized(TWO[n], *first), sized(ONE[n], *second)) for n in (0, 1)]
+    people: list[tuple[Observation, ...]] = [
+        (sized(TWO[n], *first), sized(ONE[n], *second)) for n in (0, 1)
+    ]
     assert choice(people) == (found, found)
 
 

@@ -30,7 +30,7 @@ SMALL_COST: Final = 2.0
 """Cost of a person of no size, beside the largest of the view, where none is expected; it falls
 with the size."""
 ASIDE: Final = 0.5
-"""Share of the height by which a person at a picture's side counts as smaller: there people pass."""
+"""Share of the height by which a person at a picture's side counts as smaller: they may pass."""
 
 
 def costs_of(camera: Camera, people: People, expected_m: Vector | None) -> list[float]:
