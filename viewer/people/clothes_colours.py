@@ -28,9 +28,9 @@ def clothes_colours(picture: Image, seen: Observation) -> tuple[float, ...]:
     for first, last in (UPPER, LOWER):
         rows = slice(box.top + int(first * high), box.top + max(int(last * high), 1))
         part = np.s_[rows, box.left : box.right + 1]
-        shown = picture[part][mask[part]]
-        if not len(shown):
+        inside = mask[part].view(np.uint8)
+        if not cv2.countNonZero(inside):
             return ()
-        mean = shown.mean(axis=0, dtype=np.float32).reshape(1, 1, 3) / 255.0
+        mean = np.array(cv2.mean(picture[part], inside)[:3], np.float32).reshape(1, 1, 3) / 255.0
         means += cv2.cvtColor(mean, cv2.COLOR_BGR2LAB).ravel().tolist()
     return tuple(means)
