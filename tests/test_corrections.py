@@ -1,8 +1,10 @@
 """What was wrong about who is who is put right, after it was so for long enough."""
 
 from crowd_of_two import BLUE, LEFT_M, RED, RIGHT_M
+from staging import PERSON
 from test_owners import ROOM, life
 
+from integrator.measuring.known_body import Measured, Unknown
 from integrator.people.corrections import (
     LONG_S,
     ONE_S,
@@ -13,6 +15,7 @@ from integrator.people.corrections import (
     of_one,
     themselves,
 )
+from integrator.person import Waiting
 
 LIVES = [life(1, LEFT_M, RED), life(2, RIGHT_M, BLUE)]
 
@@ -23,6 +26,14 @@ def test_who_has_anothers_observation_goes_on_without_it_and_anew() -> None:
     assert (lives[0].tracks, lives[0].joints_m) == ((0, -1), None)
     assert lives[0].colours == LIVES[0].colours
     assert lives[1] is LIVES[1]
+
+
+def test_a_body_that_was_measured_is_kept_where_the_pose_begins_anew() -> None:
+    measured = Waiting(Measured(PERSON, (0.0, 1.0, 0.0)))
+    one = LIVES[0]._replace(state=LIVES[0].state._replace(person=measured))
+    lives, _ = loosened([one, LIVES[1]], [(0, 1), (1, 0)], [(0, 1), (1, 0)], ROOM)
+    assert lives[0].state.person == measured
+    assert isinstance(lives[1].state.person.body, Unknown)
 
 
 def test_who_wear_each_others_clothes_for_long_get_their_numbers_back() -> None:

@@ -5,7 +5,9 @@ from collections.abc import Sequence
 from typing import Final, NamedTuple
 
 from integrator import merge_state
+from integrator.measuring.known_body import Measured
 from integrator.people.known_life import NO_TRACK, Life
+from integrator.person import Waiting
 
 ONE_S: Final = 0.5
 """How long two people, each shown by views that do not show the other, must be in one place to be
@@ -55,7 +57,7 @@ def loosened(
     room: merge_state.State,
 ) -> tuple[list[Life], list[Indices]]:
     """The people and the observations in which no person has one of another: who had is seen by the
-    other views alone from now on, and their pose begins anew.
+    other views alone from now on, and their pose begins anew, with the body if it was measured.
 
     Args:
         lives: The people.
@@ -67,9 +69,16 @@ def loosened(
     for place, view in mistaken:
         life = freed[place]
         tracks = tuple(NO_TRACK if n == view else old for n, old in enumerate(life.tracks))
-        freed[place] = life._replace(state=alone_in(room), tracks=tracks, joints_m=None)
+        freed[place] = life._replace(state=_anew(life, room), tracks=tracks, joints_m=None)
         indices[place] = tuple(-1 if n == view else own for n, own in enumerate(indices[place]))
     return freed, indices
+
+
+def _anew(life: Life, room: merge_state.State) -> merge_state.State:
+    """The state of a person whose pose begins anew; a body measured in the opening posture is
+    theirs."""
+    fresh, body = alone_in(room), life.state.person.body
+    return fresh._replace(person=Waiting(body)) if isinstance(body, Measured) else fresh
 
 
 def themselves(
