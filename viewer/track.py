@@ -146,7 +146,7 @@ def step(state: State, frame: CapturedFrame, guide: Guide | None) -> tuple[State
 
 
 def look(state: State, frame: CapturedFrame, guide: Guide | None) -> tuple[State, View, Mask]:
-    """The silhouette and the landmarks of a frame, as a message, and the mask (H, W).
+    """The people of a frame, as a message, and the first one's mask (H, W).
 
     Args:
         state: The viewer's state.
@@ -187,7 +187,7 @@ def look(state: State, frame: CapturedFrame, guide: Guide | None) -> tuple[State
     if state.moved is not None:
         view = msgspec.structs.replace(view, shift=state.moved.shift)
     state = state._replace(silhouette=remembered, near_px=_middle_px(seen.box), landmarks=known)
-    return state, view, seen.mask
+    return state, view, mask_of(view) if shown.others else seen.mask
 
 
 def _moving_since_s(state: State, guide: Guide | None) -> float | None:
