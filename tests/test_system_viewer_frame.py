@@ -19,7 +19,8 @@ from viewer.background import moved_camera
 from viewer.background.background import Background, learn
 from viewer.background.moved_objects import Patch
 from viewer.captured_frame import CapturedFrame
-from viewer.landmarks.person_mask import LandmarkResult, Shown
+from viewer.landmarks.landmark_window import Window
+from viewer.landmarks.person_mask import LandmarkResult, PersonMask, Shown
 from viewer.people.known_people import of_one
 from viewer.people.observed_people import everyone
 from viewer.room.silhouette_correction import Corrected
@@ -305,3 +306,25 @@ def test_who_is_nobody_starts_the_search_anew() -> None:
     found, told = track.describe(state, report, nobody.mask, None)
     assert found.search.found is None
     assert told is report
+
+
+@pytest.mark.parametrize(
+    ("alone", "calibrated", "count"), [(False, True, 1), (True, False, 1), (False, False, 0)]
+)
+def test_others_are_reported_without_the_followed_one_where_places_tell_people_apart(
+    monkeypatch: pytest.MonkeyPatch, alone: bool, calibrated: bool, count: int
+) -> None:
+    """Elsewhere the integrator takes the first, who must not be another."""
+    logits = np.full((48, 48), -4.0, np.float32)
+    logits[4:44, 10:30] = 4.0
+    other = LandmarkResult(landmarks(0.9), PersonMask(logits, Window(0, 0, 48)))
+    shown = Shown(LandmarkResult(None), 3, ((5, other),))
+    monkeypatch.setattr(landmark_step, "step", lambda state, *_, **__: (state, shown))
+    begun = track.init(setup(alone=alone, calibrated=calibrated), room())
+    rng = np.random.default_rng(1)
+    picture = (100 + rng.integers(-40, 40, (HIGH, WIDE, 3))).astype(np.uint8)
+    _, report, mask = track.look(begun, frame(picture=picture), None)
+    assert [person.track for person in report.people] == [5] * count
+    assert mask.any() == bool(count)
+    for person in report.people:
+        np.testing.assert_array_equal(mask, unpack(person))
