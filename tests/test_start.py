@@ -20,6 +20,7 @@ from test_page_server import free_port
 
 from animator.page.door import Entrance, invitation_of
 from animator.start.start_page import StartPage
+from animator.start.wishes import CHUNK_BYTES
 from calibration.foreign.toml_rig import toml_text
 from common.config import config_file
 from common.rig.rig_file import load_rig
@@ -260,6 +261,18 @@ def test_what_is_dropped_is_seen_at_once_and_can_be_taken_away(
     click(looking, "#files button[id^=away]")
     assert looking.until("!document.querySelector('#files li')")
     assert [path.name for path in (started.runs / ".uploads").iterdir()] == ["owner"]
+
+
+def test_large_files_come_whole_in_pieces_beside_each_other(
+    looking: Looking, started: Started, tmp_path: Path
+) -> None:
+    contents = {f"cam{n}.avi": os.urandom(5 * CHUNK_BYTES // 2 + n) for n in (1, 2)}
+    for name, content in contents.items():
+        (tmp_path / name).write_bytes(content)
+    choose(looking, *(tmp_path / name for name in contents))
+    assert looking.until("document.querySelectorAll('#files .bad').length == 2"), "no videos"
+    found = {path.name: path.read_bytes() for path in started.runs.glob(".uploads/*/*")}
+    assert found == contents
 
 
 @pytest.mark.slow
