@@ -196,6 +196,8 @@ def test_no_serious_fault_of_access_and_nothing_beyond_the_window(
             wide = looking.ask("document.documentElement.scrollWidth")
             beyond = looking.ask(BEYOND.format(width=size[0]))
             assert (wide <= size[0], beyond) == (True, 0), size
+            unseen = "[...document.querySelectorAll('label')].filter(e => !e.control.offsetWidth)"
+            assert looking.ask(f"{unseen}.map(e => e.innerText).join()") == "", "a label alone"
             tab.call("Runtime.evaluate", expression=AXE.read_text())
             found = tab.call(
                 "Runtime.evaluate",

@@ -62,7 +62,7 @@ export class Tray {
     const number = (id) => (at(id).value === "" ? null : Number(at(id).value));
     this.link.say({
       type: "work", task, name: at("name").value, calibration: task === "track" ? at("calibration").value : "",
-      everyone: task === "track" && at("people").value === "all",
+      everyone: task === "track" && at("whom").value === "all",
       offset_s: task === "track" ? number("offset") : null, stature_m: number("stature") ?? 1.75, square_mm: number("square"),
     });
     at("name").own = false;
