@@ -190,7 +190,7 @@ def test_all_that_is_remembered_is_in_every_state_that_is_saved(
     performed(prepared(), {}, witness, None, Course(work=work))
     assert [state.starts for state in work.states] == [{1: n, 2: n} for n in (1, 2, 3, 4)]
     assert [state.witness.moved for state in work.states] == [False, False, True, True]
-    assert [len(state.witness.rows[2]) for state in work.states] == [2] * FRAMES, "one list"
+    assert [len(state.witness.rows[0][2]) for state in work.states] == [2] * FRAMES, "one list"
     assert [state.calibration.now_s for state in work.states] == [n / 15 for n in range(FRAMES)]
     spent_s = [state.spent["following"] for state in work.states]
     assert sorted(set(spent_s)) == spent_s
