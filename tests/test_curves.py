@@ -54,6 +54,13 @@ def test_more_is_higher_and_a_band_lies_on_both_sides() -> None:
     assert upper[1][1] - line[1][1] == pytest.approx(line[1][1] - lower[1][1], abs=0.02)
 
 
+def test_the_narrower_band_is_within_the_frame() -> None:
+    y = np.array([0.0, 10.0])
+    wide = Curve(np.arange(2.0), y, "left", (np.full(2, 90.0), np.full(2, 30.0)))
+    drawn = chart("hip", "deg", [wide], (0.0, 1.0), 1.0)
+    assert {"-20", "0", "20", "40"} <= {tick.text for tick in drawn.up}
+
+
 def test_of_a_long_curve_the_extremes_stay() -> None:
     y = np.zeros(100_000)
     y[77_777], y[33_333] = 9.0, -5.0

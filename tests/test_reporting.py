@@ -90,6 +90,15 @@ def test_the_video_has_a_picture_for_each_row(tmp_path: Path) -> None:
     assert video.get(cv2.CAP_PROP_FRAME_WIDTH) == 320
 
 
+def test_the_video_of_single_is_kept_for_it_shows_more(tmp_path: Path) -> None:
+    folder = written(tmp_path, walking(), run_of={"command": "single", "footage": []})
+    (folder / "overlay.mp4").write_bytes(b"single's")
+    html, _ = reported(folder)
+    assert (folder / "overlay.mp4").read_bytes() == b"single's"
+    assert '<a href="overlay.mp4"' in html
+    assert "<img" in html
+
+
 def test_without_its_videos_a_run_is_reported_without_pictures(tmp_path: Path) -> None:
     folder = written(tmp_path, walking())
     (tmp_path / "clip" / "cam1.avi").unlink()

@@ -63,7 +63,10 @@ def chart(
         x_span: Ends of the frame across.
         least: Smallest height of the frame, in the unit: noise is not enlarged to its full height.
     """
-    y_span = _span([curve.y for curve in curves], least)
+    edges = [
+        curve.y + way * band for curve in curves for band in curve.bands[-1:] for way in (-1, 1)
+    ]
+    y_span = _span([*(curve.y for curve in curves), *edges], least)
     up = ticks(*y_span)
     grid = "".join(f'<path class="grid" d="M0 {tick.at:.1f}H{WIDE:.0f}"/>' for tick in _down(up))
     drawn = [_drawn(curve, x_span, y_span) for curve in curves]

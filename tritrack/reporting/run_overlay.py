@@ -8,6 +8,7 @@ import cv2
 import numpy as np
 
 from animator.report.report_page import Shot
+from animator.video_codec import CODECS
 from animator.video_file import Picture, write_video
 from common.video.decoding import Decoder
 from runtime.store.past_run import PastRun
@@ -30,7 +31,8 @@ class Drawn(NamedTuple):
 
 
 def draw(run: PastRun, wanted: Collection[int], tell: Tell) -> Drawn:
-    """Write the overlay of a run's views into its folder.
+    """Write the overlay of a run's views into its folder, but for a run of `tritrack single`, whose
+    own overlay shows the silhouette too.
 
     The video has a constant rate and the duration of the run.
 
@@ -60,7 +62,20 @@ def draw(run: PastRun, wanted: Collection[int], tell: Tell) -> Drawn:
             tell(moment.share)
             yield from [moment.picture] * often[float(run.poses["time_s"][moment.rows[0]])]
 
+    own = _own_overlay(run)
+    if own:
+        for _ in pictures():
+            pass
+        return Drawn(own, shots)
     return Drawn(write_video(run.folder / "overlay", pictures(), 1 / period_s).path.name, shots)
+
+
+def _own_overlay(run: PastRun) -> str:
+    """File name of the overlay that `tritrack single` wrote; "" where there is none."""
+    if (run.summary.get("run_of") or {}).get("command") != "single":
+        return ""
+    names = (f"overlay{codec.suffix}" for codec in CODECS)
+    return next((name for name in names if (run.folder / name).is_file()), "")
 
 
 def _shots(run: PastRun, moment: Moment, wanted: Collection[int]) -> dict[int, Shot]:
