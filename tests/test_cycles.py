@@ -42,6 +42,16 @@ def test_a_gap_takes_its_cycle_away_and_no_other() -> None:
     assert not any(a <= middle <= b for a, b in left.spans)
 
 
+def test_arms_that_are_lowered_once_do_not_hide_the_steps() -> None:
+    """Both arms go down by a right angle before the walk: the widest motion of all."""
+    angles_deg, time_s = gait(1.2)
+    lowered = 90.0 / (1.0 + np.exp(8.0 * (time_s - 0.7)))
+    both = np.column_stack([angles_deg, -lowered, -lowered, lowered, lowered])
+    found = cycles_of(both, time_s)
+    assert found.lasts_s == pytest.approx(1.2, rel=0.06)
+    assert len(found.spans) >= 8
+
+
 def test_what_does_not_repeat_itself_has_no_cycles() -> None:
     time_s = np.arange(150) / 15
     once = 60 / (1 + np.exp(-3 * (time_s - 5)))

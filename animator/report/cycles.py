@@ -13,10 +13,12 @@ CALM_S: Final = 0.12
 """Standard deviation of the smoothing before peaks are looked for, seconds."""
 SHORTEST_S: Final = 0.4
 """Shortest cycle, seconds: nobody steps twice with one foot in less."""
-PROMINENT: Final = 0.4
-"""Least height of a peak over the valleys beside it, in ranges of the motion."""
+PROMINENT: Final = 0.5
+"""Least height of a peak over the valleys beside it, over that of most peaks."""
 LEAST_DEG: Final = 12.0
-"""Smallest range of a motion that has cycles, degrees along its main direction."""
+"""Smallest height of a peak, degrees along the direction of the motion."""
+DIRECTIONS: Final = 4
+"""Number of main directions that are looked along."""
 ALIKE: Final = 1.6
 """Largest ratio of a cycle's duration to the median one, and its inverse the smallest."""
 FEWEST: Final = 2
@@ -37,11 +39,12 @@ NONE: Final = Cycles((), 0.0)
 
 
 def cycles_of(angles_deg: Floats, time_s: Vector) -> Cycles:
-    """The cycles of a run's main motion; none where it does not repeat itself.
+    """The cycles of a run's motion; none where it does not repeat itself.
 
-    The main motion is the direction in which all angles together vary most; a cycle is from one
-    extreme of it to the next, on the side where extremes are sharper. One that is much longer or
-    shorter than the others, or has a gap, is left out.
+    The angles together vary along some main directions; that one counts along which most is
+    repeated for the longest: arms that are lowered once may move further than all steps after
+    that. A cycle is from one extreme to the next of its kind. One that is much longer or shorter
+    than the others, or has a gap, is left out.
 
     Args:
         angles_deg: (n, k), NaN where not known; an angle that is mostly not known is not used.
@@ -53,22 +56,30 @@ def cycles_of(angles_deg: Floats, time_s: Vector) -> Cycles:
         return NONE
     moved = angles_deg[known][:, usable]
     moved = moved - np.median(moved, axis=0)
-    main = moved @ np.linalg.svd(moved, full_matrices=False)[2][0]
-    own_s = time_s[known]
-    step_s = float(np.median(np.diff(own_s)))
-    calm = gaussian_filter1d(main, CALM_S / step_s)
-    found = max((_of_peaks(way * calm, step_s) for way in (1.0, -1.0)), key=len)
-    rows = np.flatnonzero(known)[found]
-    return _alike(rows, known, time_s)
+    step_s = float(np.median(np.diff(time_s[known])))
+    best, most = NONE, 0.0
+    for direction in np.linalg.svd(moved, full_matrices=False)[2][:DIRECTIONS]:
+        calm = gaussian_filter1d(moved @ direction, CALM_S / step_s)
+        for way in (1.0, -1.0):
+            peaks, high_deg = _peaks(way * calm, step_s)
+            found = _alike(np.flatnonzero(known)[peaks], known, time_s)
+            much = len(found.spans) * found.lasts_s * high_deg
+            if much > most:
+                best, most = found, much
+    return best
 
 
-def _of_peaks(calm: Vector, step_s: float) -> NDArray[np.intp]:
-    low, high = np.percentile(calm, [2, 98])
-    if high - low < LEAST_DEG:
-        return np.zeros(0, np.intp)
+def _peaks(calm: Vector, step_s: float) -> tuple[NDArray[np.intp], float]:
+    """Rows of the extremes, and the median height of these over the valleys beside them.
+
+    A peak counts that is as prominent as most, so that a single wide motion hides none.
+    """
     apart = max(1, round(SHORTEST_S / step_s))
-    peaks, _ = find_peaks(calm, prominence=PROMINENT * (high - low), distance=apart)
-    return np.asarray(peaks, np.intp)
+    peaks, told = find_peaks(calm, prominence=LEAST_DEG, distance=apart)
+    if not len(peaks):
+        return np.zeros(0, np.intp), 0.0
+    usual_deg = float(np.median(told["prominences"]))
+    return np.asarray(peaks[told["prominences"] >= PROMINENT * usual_deg], np.intp), usual_deg
 
 
 def _alike(rows: NDArray[np.intp], known: NDArray[np.bool_], time_s: Vector) -> Cycles:
