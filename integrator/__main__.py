@@ -25,7 +25,7 @@ from integrator.integrator_warmup import warm_up
 from integrator.live_rig.live_calibration import LiveCalibration, is_by_person
 from integrator.measuring import opening_posture
 from integrator.merge_state import Start, State
-from integrator.people import several
+from integrator.people import recognition, several
 from integrator.single.sight import Annotations
 
 LAST_WORDS_S: Final = 1.0
@@ -37,7 +37,7 @@ SUPERVISED_S: Final = 60.0
 class Merging(NamedTuple):
     """A run of the integrator at a moment."""
 
-    state: several.State
+    state: recognition.State
     said: Annotations = Annotations()
     """The user's annotations of the next instant."""
     noticed: diagnostics.State = diagnostics.State()
@@ -52,7 +52,7 @@ def run(
     estate: Estate = Estate(None),
 ) -> None:
     """Merge the viewers' reports until each has ended; wait for the page for a given time."""
-    at, pace, told = Merging(several.State(state)), Pace(state.period_s), RigPublisher(bus)
+    at, pace, told = Merging(recognition.State(state)), Pace(state.period_s), RigPublisher(bus)
     heart = Heart(bus, "integrator", pace)
     begun, cameras = (estate.over, estate.start_s), len(state.frames)
     subscriber = Subscriber(bus, viewers, state.period_s, wait_s, *begun, cameras)

@@ -25,7 +25,7 @@ from common.video.clip_facts import Act, Clip, ClipView, Meta
 from common.video.clip_sources import ClipError
 from common.video.pictures import Ending
 from integrator import diagnostics, merge_state
-from integrator.people import several
+from integrator.people import recognition
 from lab.accuracy.accuracy import compare
 from runtime.offline import lockstep
 from runtime.offline.batch import Asked, track_all
@@ -219,7 +219,7 @@ def ready_made(clip: Clip = PAIR) -> Prepared:
     frame_caches: Any = {
         view.number: SimpleNamespace(ending=endings[view.number]) for view in clip.views
     }
-    return Prepared(clip, frame_caches, {}, several.State(state), ["nothing moves"], 2.34567)
+    return Prepared(clip, frame_caches, {}, recognition.State(state), ["nothing moves"], 2.34567)
 
 
 def performed_so(*bodies: Body) -> Performance:
@@ -227,7 +227,7 @@ def performed_so(*bodies: Body) -> Performance:
     state = state._replace(scale_source="person")
     seconds = {"viewers": 3.00004, "integrator": 1.0, "following": 4.0}
     noticed = diagnostics.State()
-    return Performance(bodies, several.State(state), noticed, ("a new rig",), seconds)
+    return Performance(bodies, recognition.State(state), noticed, ("a new rig",), seconds)
 
 
 def seen_body(frame: int = 0) -> Body:

@@ -243,10 +243,10 @@ def test_a_calibration_of_other_cameras_is_not_lost(
     ("wanted", "size", "said"),
     [
         (
-            ClipSet("dance"),
+            ClipSet("dance"),  # type: ignore[arg-type]
             SIZE,
             "motion must be postures, free, fall, stream, spot, cross, got 'dance'",
-        ),  # type: ignore[arg-type]
+        ),
         (ClipSet("free", performers=0), SIZE, "performers must be at least 1, got 0"),
         (ClipSet("free", takes=0), SIZE, "takes must be at least 1, got 0"),
         (ClipSet("free", cameras=0), SIZE, "cameras must be 1 to 8, got 0"),

@@ -24,7 +24,7 @@ from integrator import merge_state
 from integrator.live_rig.rig_change import set_back, with_rig
 from integrator.measuring import opening_posture
 from integrator.merge_state import Start
-from integrator.people import several
+from integrator.people import recognition, several
 from runtime.store.other_run import refuse_other, run_of
 from runtime.store.recording import Recording, read_recording
 from runtime.store.runs import write_run
@@ -79,7 +79,7 @@ def integrated(recording: Recording) -> Replayed:
         METHODS[head.settings.mode],
         Start(head.alone, head.scale_source, opening, head.times, head.by_person),
     )
-    state = several.State(room)
+    state = recognition.State(room)
     rigs = {told.calibration: told.rig for told in recording.cameras}
     bodies: list[Body] = []
     same = 0

@@ -32,7 +32,7 @@ from integrator import diagnostics, merge_state
 from integrator.frame_numbers import frame_times
 from integrator.measuring import opening_posture
 from integrator.merge_state import Start
-from integrator.people import several
+from integrator.people import recognition
 from runtime.moved_facts import moved_facts
 from runtime.offline.frame_pairs import openings
 from runtime.offline.opening_clip import body_of
@@ -248,7 +248,7 @@ def _prepared(
     start = Start(alone, source, opening, frame_times(clip), uprights=uprights_of(clip))
     integrator = merge_state.init(rig, period_s, settings, method, start)
     return Prepared(
-        clip, frame_caches, viewers, several.State(integrator), odd, time.perf_counter() - began
+        clip, frame_caches, viewers, recognition.State(integrator), odd, time.perf_counter() - began
     )
 
 

@@ -11,8 +11,8 @@ from common.config.settings import Settings
 from common.method import Method
 from common.video.clip_facts import Clip, ClipView, whole_rig
 from integrator.live_rig.live_calibration import LiveCalibration
-from integrator.people import several
-from integrator.people.several import Merged
+from integrator.people import recognition, several
+from integrator.people.lived_instant import Merged
 from viewer import track
 from viewer.background.background import Background
 from viewer.captured_frame import CapturedFrame
@@ -68,8 +68,8 @@ def looked(
 
 
 def joined(
-    integrator: several.State, reports: Reports, calibration: LiveCalibration
-) -> tuple[several.State, Merged]:
+    integrator: recognition.State, reports: Reports, calibration: LiveCalibration
+) -> tuple[recognition.State, Merged]:
     """The integrator's state after the reports of an instant, the bodies and the guide.
 
     Args:

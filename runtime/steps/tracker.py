@@ -18,7 +18,7 @@ from integrator.frame_numbers import FrameTimes
 from integrator.live_rig.live_calibration import LiveCalibration
 from integrator.live_rig.rig_solver import SolverAtOnce
 from integrator.merge_state import Start
-from integrator.people import several
+from integrator.people import recognition
 from recognizer import __main__ as recognizer
 from recognizer import everyone
 from runtime.steps.loop_backgrounds import Learns, empty_of, is_enough, plates_of
@@ -46,7 +46,7 @@ class _Going(NamedTuple):
     """By camera whose background is still being learnt."""
     viewers: dict[ViewerNumber, track.State]
     """By camera whose background is known."""
-    integrator: several.State
+    integrator: recognition.State
     calibration: LiveCalibration
     naming: everyone.State[recognizer.State]
     guide: Guide | None = None
@@ -197,7 +197,7 @@ class Tracker:
         calibration = LiveCalibration(state, looks=False, solver=SolverAtOnce())
         learns: Learns = {} if viewers else {view.number: () for view in clip.views}
         streams = everyone.init(naming)
-        return _Going(clip, learns, viewers, several.State(state), calibration, streams)
+        return _Going(clip, learns, viewers, recognition.State(state), calibration, streams)
 
     def _backgrounds(
         self, clip: Clip, given: Mapping[ViewerNumber, Image]
