@@ -66,7 +66,8 @@ def silhouettes(pose: Vector, body: Bdp = PERSON, rig: Rig = RIG) -> tuple[Mask,
 
 
 def exact(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let viewers take the picture for the silhouette; one that stands still is no fault."""
+    """Let viewers take the picture for the silhouette; one that stands still is no fault, and it
+    has no colours."""
 
     def step(state: None, picture: Image, _near: object) -> tuple[None, Seen]:
         mask, box = picture.view(np.bool_), box_of(picture)
@@ -78,6 +79,7 @@ def exact(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("viewer.camera_fault.init", lambda _: None)
     monkeypatch.setattr("viewer.camera_fault.step", lambda state, *_: (state, ""))
     monkeypatch.setattr("viewer.track._watched", lambda *_: None)
+    monkeypatch.setattr("viewer.people.observed_people.clothes_colours", lambda *_: ())
     monkeypatch.setattr("viewer.silhouette.silhouette.init", lambda *_: None)
     monkeypatch.setattr("viewer.silhouette.silhouette.step", step)
     monkeypatch.setattr("viewer.silhouette.silhouette.without_things", lambda state, *_: state)
