@@ -58,6 +58,7 @@ RESULTS: Final = {
     "tritrack live clips": Result(
         ("runs/live/poses.npz", "runs/live/posture.json"), "posture: squat"
     ),
+    "tritrack report": Result(("runs/s00_t1_12_squat/report.html",)),
     "tritrack live configs": Result(("runs/1/poses.npz", "runs/1/posture.json"), "posture: squat"),
     "tritrack single": Result(
         ("runs/cam1/poses.npz", "runs/cam1/body.bvh", "runs/cam1/overlay.mp4")
