@@ -55,10 +55,10 @@ RESULTS: Final = {
     "tritrack synth --out scenes": Result(("scenes/people2_s00_t1/truth.npz",), "1 clip written"),
     "tritrack track clips": Result(("runs/s0*/poses.npz", "runs/s0*/summary.json")),
     "tritrack track scenes": Result(("runs/people2_s00_t1/poses.npz",), "1 clip tracked"),
+    "tritrack report": Result(("runs/s00_t1_12_squat/report.html",)),
     "tritrack live clips": Result(
         ("runs/live/poses.npz", "runs/live/posture.json"), "posture: squat"
     ),
-    "tritrack report": Result(("runs/s00_t1_12_squat/report.html",)),
     "tritrack live configs": Result(("runs/1/poses.npz", "runs/1/posture.json"), "posture: squat"),
     "tritrack single": Result(
         ("runs/cam1/poses.npz", "runs/cam1/body.bvh", "runs/cam1/overlay.mp4")
