@@ -6,6 +6,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from animator.scene import LEFT, RIGHT
 from common.npz_file import Arrays
 
 SHOWN: Final = {
@@ -15,7 +16,8 @@ SHOWN: Final = {
     "elbow": "elbow_x",
 }
 """The angle of each row of the plot, for both sides."""
-SIDES: Final = {"left": "tab:blue", "right": "tab:orange"}
+SIDES: Final = {"left": [each / 255 for each in LEFT], "right": [each / 255 for each in RIGHT]}
+"""Their colours, as on every page and in every overlay."""
 
 
 def angle_plot(poses: Arrays) -> bytes:
