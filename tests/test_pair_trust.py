@@ -40,7 +40,9 @@ def test_a_good_rig_is_believed_by_all_pairs() -> None:
 
 
 @pytest.mark.parametrize(
-    ("wrong", "fault"), [(0, turned), (1, moved), (2, turned), (3, moved)], ids=str
+    ("wrong", "fault"),
+    [(0, turned), (1, moved), (2, turned), (3, moved)],
+    ids=["turned 1", "moved 2", "turned 3", "moved 4"],
 )
 def test_the_camera_that_is_wrong_is_named(wrong: int, fault: Any) -> None:
     cameras = [*RIG.cameras]
