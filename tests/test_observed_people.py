@@ -156,6 +156,13 @@ def test_of_everyone_those_without_landmarks_are_left_out_and_the_others_stay() 
     assert [each.track for each in found] == [5]
 
 
+def test_the_silhouette_of_a_followed_person_who_is_not_seen_takes_no_pixels_of_others() -> None:
+    """It is then of whoever is in the picture: here of the other."""
+    shown = Shown(LandmarkResult(None), 3, ((5, result(16, 30)),))
+    (other,) = observed(silhouette(16, 30), shown, 0.15)
+    assert (other.track, columns(unpack(other))) == (5, (16, 30))
+
+
 @lru_cache(maxsize=1)
 def pairs() -> list[tuple[Crowd, tuple[Observation, ...]]]:
     """Ten pictures of two people who stand close, both found at first sight in a region that holds

@@ -246,3 +246,16 @@ def test_each_of_several_people_is_evidence_where_no_other_is_close(
     assert [own[1].people[0].track for _, own in found] == [3, 4]
     alone = Merged(bodies[:1], merged.guide, each[0])
     assert performance.evidence(reports, alone) == [(bodies[0], reports)]
+
+
+def test_the_first_of_several_people_is_evidence_by_their_own_views_before_others_are_known() -> (
+    None
+):
+    """The views' first is another, who has no number yet."""
+    moment = dict[str, Any](captured_s=0.0, clock_s=0.0, frame=0)
+    body = Body(person=1, status="tracking", views="both", **moment)
+    first, second = two_in_a_view(1, 5), two_in_a_view(2, 5)
+    own = Instant((first[1], second[1]))
+    merged = Merged((body,), Guide(frames=(0, 0), **moment), own, (own,))
+    found = performance.evidence({1: first[0], 2: second[0]}, merged)
+    assert found == [(body, {1: first[1], 2: second[1]})]

@@ -247,6 +247,13 @@ def test_each_person_is_evidence_of_their_own_whoever_was_seen_longest_first() -
     assert [len(seen.tracks[0].times_s) for seen in each] == [8, 4]
 
 
+def test_of_very_many_people_those_are_kept_who_were_seen_longest_and_the_last(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(rig_check, "MOST_PEOPLE", 3)
+    assert sorted(witnessed_people(2, 8, 4, 3, 1).seen.rows) == [2, 3, 5]
+
+
 def test_who_was_never_seen_in_a_view_is_no_evidence_and_no_error() -> None:
     clip, witness = msgspec.structs.replace(two_views(), rig=RIG), Witness()
     for n in range(3):

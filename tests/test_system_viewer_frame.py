@@ -311,14 +311,18 @@ def test_who_is_nobody_starts_the_search_anew() -> None:
 @pytest.mark.parametrize(
     ("alone", "calibrated", "count"), [(False, True, 1), (True, False, 1), (False, False, 0)]
 )
+@pytest.mark.parametrize("has_landmarks", [False, True])
 def test_others_are_reported_without_the_followed_one_where_places_tell_people_apart(
-    monkeypatch: pytest.MonkeyPatch, alone: bool, calibrated: bool, count: int
+    monkeypatch: pytest.MonkeyPatch, alone: bool, calibrated: bool, count: int, has_landmarks: bool
 ) -> None:
-    """Elsewhere the integrator takes the first, who must not be another."""
+    """Elsewhere the integrator takes the first, who must not be another; also where the followed
+    one has landmarks and no pixel."""
     logits = np.full((48, 48), -4.0, np.float32)
     logits[4:44, 10:30] = 4.0
     other = LandmarkResult(landmarks(0.9), PersonMask(logits, Window(0, 0, 48)))
-    shown = Shown(LandmarkResult(None), 3, ((5, other),))
+    nowhere = PersonMask(np.full((48, 48), -4.0, np.float32), Window(0, 0, 48))
+    followed = LandmarkResult(landmarks(0.9), nowhere) if has_landmarks else LandmarkResult(None)
+    shown = Shown(followed, 3, ((5, other),))
     monkeypatch.setattr(landmark_step, "step", lambda state, *_, **__: (state, shown))
     begun = track.init(setup(alone=alone, calibrated=calibrated), room())
     rng = np.random.default_rng(1)

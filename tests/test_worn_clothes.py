@@ -42,7 +42,7 @@ def test_clothes_are_learnt_where_all_are_seen_apart() -> None:
 
 def test_two_who_wear_each_others_clothes_get_their_numbers_back() -> None:
     people, found = step(KNOWN, (seen(3, LEFT, BLUE), seen(5, OVER_LEFT, RED)))
-    assert [one.track for one in found] == [5, 3]
+    assert [(one.track, one.box) for one in found] == [(3, OVER_LEFT), (5, LEFT)], "followed first"
     assert [each.landmarks.joints_px[0][0] for each in people.tracks] == [5.0, 3.0]
     assert [each.number for each in people.tracks] == [3, 5]
     assert people.followed == 3

@@ -181,7 +181,7 @@ def look(state: State, frame: CapturedFrame, guide: Guide | None) -> tuple[State
     people = everyone(remembered, frame.picture, seen, shown, least_share)
     known_now, people = worn_clothes.step(known.people, people)
     known = known._replace(people=known_now)
-    if shown.followed.landmarks is None and shown.others and not setup.is_placed:
+    if people and people[0].track != known_now.followed and not setup.is_placed:
         people = ()
     view = _view_of(setup.viewer, frame, seen, people)
     if state.moved is not None:

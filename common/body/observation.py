@@ -118,8 +118,8 @@ class Observation(
     landmarks: Landmarks | None = None
     """None where the source of landmarks sees no person here, or there is none."""
     colours: tuple[float, ...] = ()
-    """Mean L*a*b* of the clothes of the upper body, then of the legs; empty where one person is
-    followed."""
+    """Mean L*a*b* of the clothes of the upper body, then of the legs; empty where there are no
+    landmarks."""
     vote: Facing = "facade"
     """What this view alone takes itself for: facade or flank (P26)."""
     upper_body_px: float = 0.0

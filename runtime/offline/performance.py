@@ -176,7 +176,7 @@ def _stepped(
 def evidence(reports: dict[int, View], merged: Merged) -> list[tuple[Body, dict[int, View]]]:
     """What is evidence about the rig: each person in the views where no other is close to them, as
     of two who are close one view may have shown the other for a moment."""
-    if len(merged.bodies) == 1:
+    if not merged.of_each:  # one person is followed, or no person is known
         return [(merged.bodies[0], reports)]
     return [
         (body, {n: _alone(own.views[n - 1], report) for n, report in reports.items()})

@@ -1,6 +1,6 @@
 """Whether a run's rig is believable: all views' landmarks are kept and tested at its end."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import msgspec
@@ -23,12 +23,11 @@ MOST_LATE_FRAMES: Final = 0.75
 DOUBTED: Final = 0.05
 """Factor on the confidence of bodies from views whose times do not match."""
 MOST_FRAMES: Final = 3_000
-"""Number of a run's latest frames that are kept."""
-
-
+"""Number of a person's first frames that are kept."""
+MOST_PEOPLE: Final = 12
+"""Number of people whose observations are kept, so that a long run's do not grow: each new person
+has another number. Twice as many as are known at once."""
 NONE: Final[Offsets] = {}
-
-
 SEEN_AS_LONG: Final = 0.5
 """Share of the instants of the person seen longest that another needs for their evidence to
 count."""
@@ -58,7 +57,10 @@ class Witness:
         self.seen = self.seen._replace(moved=self.seen.moved or bool(body.moved))
         if self.seen.moved:
             return
-        own = self.seen.rows.setdefault(body.person, {})
+        people = self.seen.rows
+        if body.person not in people and len(people) >= MOST_PEOPLE:
+            del people[min(people, key=lambda number: _most_rows(people[number]))]
+        own = people.setdefault(body.person, {})
         for number, report in reports.items():
             rows = own.setdefault(number, [])
             if len(rows) < MOST_FRAMES:
@@ -80,8 +82,13 @@ class Witness:
         return tuple(seen for seen in each if _instants(seen) >= least)
 
 
+def _most_rows(rows: Mapping[int, Sequence[Row]]) -> int:
+    """Number of rows of the view that has most."""
+    return max(map(len, rows.values()), default=0)
+
+
 def _instants(seen: Sightings) -> int:
-    """Number of a person's frames in the view that shows them least often but one."""
+    """Number of a person's frames in the view that shows them most often but one: two judge."""
     shown = [int((track.confidence > 0.0).any(axis=1).sum()) for track in seen.tracks]
     return sorted(shown)[-2]
 

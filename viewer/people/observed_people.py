@@ -39,7 +39,8 @@ def everyone(
             first = silhouette.at(room, picture, result.landmarks.joints_px[PELVIS])
             rivals = _rivals(shown, number, shown.followed.person)
             own = corrected(first, result, least_share, rivals).seen
-            people.append((number, _less(own, seen, least_share), result))
+            own = _less(own, seen, least_share) if is_seen else own
+            people.append((number, own, result))
     each = (_observation(own, result.landmarks, number) for number, own, result in people)
     return tuple(_coloured(picture, one) for one in each if one is not None)
 

@@ -40,12 +40,14 @@ def step(people: People, seen: Seen) -> tuple[People, Seen]:
 
 
 def _exchanged(people: People, seen: Seen, numbers: dict[int, int]) -> tuple[People, Seen]:
-    """The people and their observations with some numbers exchanged."""
+    """The people and their observations with some numbers exchanged, the followed person's first as
+    before."""
     tracks = (each._replace(number=numbers.get(each.number, each.number)) for each in people.tracks)
-    renamed = tuple(
+    renamed = [
         msgspec.structs.replace(one, track=numbers.get(one.track, one.track)) for one in seen
-    )
-    return people._replace(tracks=tuple(sorted(tracks, key=_number))), renamed
+    ]
+    renamed.sort(key=lambda one: one.track != people.followed)
+    return people._replace(tracks=tuple(sorted(tracks, key=_number))), tuple(renamed)
 
 
 def _learnt(people: People, seen: Seen) -> tuple[Clothes, ...]:
