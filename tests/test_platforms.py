@@ -6,6 +6,7 @@ Children and workers are small modules of this test's own.
 import ast
 import contextlib
 import os
+import re
 import subprocess
 import sys
 import time
@@ -337,8 +338,13 @@ KNOWN = {
 """What is used all the same, and why that does no harm."""
 
 
+ASKED = re.compile(r"\b(" + "|".join([*UNIX_ONLY, *UNIX_MODULES]) + r")\b")
+"""What a file says that uses any of it: of the others nothing need be looked at."""
+
+
 def unix_only(path: Path) -> Iterator[str]:
-    for node in ast.walk(ast.parse(path.read_text())):
+    text = path.read_text()
+    for node in ast.walk(ast.parse(text)) if ASKED.search(text) else ():
         match node:
             case ast.Attribute(value=ast.Name(id=module), attr=name):
                 if name in UNIX_ONLY.get(module, "").split():
