@@ -5,6 +5,7 @@ import json
 import shutil
 import socket
 import subprocess
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -18,9 +19,11 @@ from moving import random_joints
 from waiting import until
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
+from websockets.typing import Origin
 
 from animator.page.door import PageError
 from common.bus.messages import Performance, Posture
+from runtime.bridges import websocket
 from runtime.bridges.osc import BridgeError
 from runtime.bridges.websocket import WAITING, WebSocket
 
@@ -215,3 +218,38 @@ def test_the_unity_script_reads_bodies_and_postures(bridge: WebSocket, tmp_path:
         pytest.approx(place, abs=1e-5) for place in expected
     ]
     assert doing == "squat"
+
+
+@pytest.mark.parametrize("host", ["[::1]", "127.0.0.2"])
+def test_every_address_of_this_machine_alone_answers(host: str) -> None:
+    try:
+        bridge = WebSocket(f"{host}:{free_port()}")
+    except PageError:
+        pytest.skip("this machine has no such address")
+    try:
+        with connect(socket_of(bridge), origin=Origin(f"http://{host}:3000")) as program:
+            assert program.close_code is None
+    finally:
+        bridge.close()
+
+
+def test_a_program_that_takes_nothing_more_does_not_hold_up_the_end(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """As one that is stopped in a debugger: its connection stays, and its buffers are full."""
+    monkeypatch.setattr(websocket, "ENDS_S", 0.1, raising=False)
+    bridge = WebSocket(f"127.0.0.1:{free_port()}")
+    stopped = connect(socket_of(bridge), max_queue=1)
+    listening(bridge)
+    body = a_body(0, random_joints(3)[0])
+
+    def is_stuck() -> bool:
+        for _ in range(WAITING):
+            bridge.send_body(body)
+        time.sleep(0.05)
+        return all(len(each._waiting) == WAITING for each in bridge._waiting)
+
+    assert until(is_stuck)
+    bridge.close()
+    assert until(lambda: not bridge._waiting)
+    stopped.socket.close()

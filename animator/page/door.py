@@ -10,7 +10,6 @@ from common.config.part_settings import PageSettings
 from common.endpoint import is_loopback
 
 HOST: Final = "127.0.0.1"
-OWN_NAMES: Final = (HOST, "localhost")
 EVERY_ADDRESS: Final = ("0.0.0.0", "::")
 BY_SETTINGS: Final = "set page.port to another one"
 """How a live run takes another port."""
@@ -66,8 +65,9 @@ def is_own(host: str, origin: str, entrance: Entrance = Entrance()) -> bool:
         named, whence = urlsplit(f"//{host}").hostname, urlsplit(origin).netloc
     except ValueError:
         return False
-    known = named in OWN_NAMES or named == entrance.name or bool(entrance.token)
-    return bool(named) and known and (not origin or whence == host)
+    if not named or not (is_loopback(named) or named == entrance.name or entrance.token):
+        return False
+    return not origin or whence == host
 
 
 def cookie_of(port: int) -> str:

@@ -5,7 +5,9 @@ as `docs/messages.schema.json` describes it.
 """
 
 import logging
+import socket
 import threading
+import time
 from collections.abc import Sequence
 from contextlib import suppress
 from http import HTTPStatus
@@ -20,7 +22,6 @@ from websockets.sync.server import ServerConnection, serve
 from websockets.typing import Subprotocol
 
 from animator.page.door import (
-    OWN_NAMES,
     Entrance,
     PageError,
     entrance_of,
@@ -34,6 +35,7 @@ from animator.page.page_server import MOST_SAID_BYTES, headers_of, is_of_ours, k
 from common.bus.mailbox import Mailbox
 from common.bus.messages import Body, Posture
 from common.config.part_settings import PageSettings
+from common.endpoint import is_loopback
 from runtime.bridges.osc import host_and_port
 
 SITE: Final = Path(__file__).parent / "site"
@@ -48,6 +50,8 @@ WAITING: Final = 256
 MOST_PROGRAMS: Final = 50
 LOOK_S: Final = 0.2
 """Interval, seconds, at which a silent connection is checked for its end."""
+ENDS_S: Final = 2.0
+"""Seconds that programs have for what still waits as the bridge ends."""
 CURE: Final = "take another port by --to"
 
 Packet = tuple[bytes, bytes]
@@ -73,7 +77,7 @@ class WebSocket:
         refuse_port(port, host, CURE)
         self._entrance, self._port = entrance_of(PageSettings(host=host)), port
         self.address = invitation_of(self._entrance, port)
-        self._waiting: set[Mailbox[Packet]] = set()
+        self._waiting: dict[Mailbox[Packet], ServerConnection] = {}
         self._lock = threading.Lock()
         log = logging.getLogger(f"{__name__}.socket")
         log.addFilter(is_of_ours)
@@ -106,11 +110,21 @@ class WebSocket:
         self._spread({"posture": posture})
 
     def close(self) -> None:
-        """Send what waits, disconnect the programs, and free the port."""
+        """Send what waits, disconnect the programs, and free the port.
+
+        A program that takes nothing more is cut off after a moment: its thread would wait for ever.
+        """
         with self._lock:
             for mailbox in self._waiting:
                 mailbox.close()
         self._server.shutdown()
+        until_s = time.monotonic() + ENDS_S
+        while self._waiting and time.monotonic() < until_s:
+            time.sleep(0.01)
+        with self._lock:
+            for connection in self._waiting.values():
+                with suppress(OSError):
+                    connection.socket.shutdown(socket.SHUT_RDWR)
 
     def _spread(self, message: dict[str, Body] | dict[str, Posture]) -> None:
         packet = msgspec.json.encode(message), msgspec.msgpack.encode(message)
@@ -141,7 +155,7 @@ class WebSocket:
         mailbox: Mailbox[Packet] = Mailbox(WAITING)
         is_binary = connection.subprotocol == MSGPACK
         with self._lock:
-            self._waiting.add(mailbox)
+            self._waiting[mailbox] = connection
         try:
             with suppress(ConnectionClosed):
                 while not mailbox.over and connection.close_code is None:
@@ -149,7 +163,7 @@ class WebSocket:
                         connection.send(packet[is_binary], text=not is_binary)
         finally:
             with self._lock:
-                self._waiting.discard(mailbox)
+                del self._waiting[mailbox]
 
 
 def may_enter(request: Request, entrance: Entrance, query: str, port: int) -> bool:
@@ -157,7 +171,7 @@ def may_enter(request: Request, entrance: Entrance, query: str, port: int) -> bo
     with the token where one is due."""
     host, origin = request.headers.get("Host", ""), request.headers.get("Origin", "")
     try:
-        is_local = not origin or urlsplit(origin).hostname in OWN_NAMES
+        is_local = not origin or is_loopback(urlsplit(origin).hostname or "")
     except ValueError:
         return False
     if not is_own(host, "", entrance) or not (is_local or entrance.token):
