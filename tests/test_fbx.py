@@ -67,3 +67,14 @@ def test_what_blender_says_last_is_the_reason_that_there_is_no_file(
     skeleton, motion, steps = steady(random_joints(3), np.arange(40) / 15)
     with pytest.raises(OSError, match="Blender wrote no file: no such addon"):
         fbx_bytes(skeleton, motion, steps.step_s)
+
+
+def test_a_blender_that_does_not_end_is_given_up_with_a_cure(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    waits = [sys.executable, "-c", "import time; time.sleep(60)"]
+    monkeypatch.setattr(fbx, "blender", lambda: waits)
+    monkeypatch.setattr(fbx, "WITHIN_S", 0.2)
+    skeleton, motion, steps = steady(random_joints(3), np.arange(40) / 15)
+    with pytest.raises(OSError, match="export to gltf instead"):
+        fbx_bytes(skeleton, motion, steps.step_s)

@@ -52,7 +52,7 @@ def fbx_bytes(skeleton: Skeleton, motion: Motion, step_s: float) -> bytes:
 
     Raises:
         LibraryMissing: Without Blender.
-        OSError: When Blender writes no file.
+        OSError: When Blender writes no file, or none within WITHIN_S.
     """
     command = blender()
     with tempfile.TemporaryDirectory() as folder:
@@ -61,7 +61,13 @@ def fbx_bytes(skeleton: Skeleton, motion: Motion, step_s: float) -> bytes:
         (program := Path(folder) / "convert.py").write_text(CONVERT)
         count = str(len(motion.root_m))
         asked = [*command, str(program), "--", str(read), str(written), repr(1.0 / step_s), count]
-        done = subprocess.run(asked, cwd=folder, capture_output=True, check=False, timeout=WITHIN_S)
+        try:
+            done = subprocess.run(
+                asked, cwd=folder, capture_output=True, check=False, timeout=WITHIN_S
+            )
+        except subprocess.TimeoutExpired as error:
+            text = f"Blender wrote no file within {WITHIN_S:.0f} s: export to gltf instead"
+            raise OSError(text) from error
         if not written.is_file():
             last = done.stderr.decode(errors="replace").strip().rpartition("\n")[2]
             raise OSError(f"Blender wrote no file: {last or done.returncode}")
