@@ -1,11 +1,13 @@
 """Two runs compared: the page beside the first, the numbers, and runs that cannot be compared."""
 
+import os
 from pathlib import Path
 
 import pytest
 from written_runs import body, written
 
-from common.body.body import POSE_INDEX, rest_pose
+from common.body.body import POSE_INDEX, Vector, rest_pose
+from common.bus.messages import Status
 from runtime.store.past_run import PastRunError
 from tritrack.reporting.comparing import compare_runs
 
@@ -41,3 +43,27 @@ def test_runs_that_cannot_be_compared_are_refused(tmp_path: Path) -> None:
     nobody = written(tmp_path / "c", [body(n, None, "empty") for n in range(3)])
     with pytest.raises(PastRunError, match="no same time"):
         compare_runs(one, nobody)
+
+
+def test_a_page_is_utf_8_wherever_it_is_written_and_whatever_runs_are_called(
+    tmp_path: Path,
+) -> None:
+    named = os.fsdecode(b"caf\xe9")
+    one = bent(tmp_path / "a", 40.0).parent.rename(tmp_path / named) / "run"
+    compare_runs(one, bent(tmp_path / "größe", 55.0))
+    assert "caf?/run and größe/run" in (one / "compare.html").read_text("utf-8")
+
+
+def test_a_person_whom_one_run_alone_has_a_pose_of_is_told_without_a_number(
+    tmp_path: Path,
+) -> None:
+    def two(folder: Path, second: Vector | None) -> Path:
+        rows = [(n, person) for n in range(5) for person in (1, 2)]
+        poses: dict[int, Vector | None] = {1: rest_pose(), 2: second}
+        status: dict[bool, Status] = {True: "lost", False: "tracking"}
+        return written(
+            folder, [body(n, poses[p], status[poses[p] is None], person=p) for n, p in rows]
+        )
+
+    facts = compare_runs(two(tmp_path / "a", rest_pose()), two(tmp_path / "b", None))
+    assert facts["lines"][1] == "Person 2: no frame in which both have a pose"

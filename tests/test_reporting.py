@@ -1,6 +1,7 @@
 """The report of a run: what stands on it, that nothing is loaded, and what is made anew."""
 
 import io
+import os
 import re
 from html.parser import HTMLParser
 from pathlib import Path
@@ -130,3 +131,11 @@ def test_a_run_without_a_person_or_a_pose_is_reported_too(tmp_path: Path) -> Non
     assert np.isnan(open_run(folder).poses["joints_m"]).all()
     html, _ = reported(folder)
     assert "does not repeat itself" in html
+    html, said = reported(written(tmp_path / "none", []))
+    assert "does not repeat itself" in html
+    assert "the run has no frame" in said
+
+
+def test_a_run_whose_clip_has_a_name_that_is_no_unicode_is_reported(tmp_path: Path) -> None:
+    html, _ = reported(written(tmp_path, walking(), clip=os.fsdecode(b"caf\xe9")))
+    assert "<h1>caf?</h1>" in html

@@ -50,7 +50,7 @@ def cycles_of(angles_deg: Floats, time_s: Vector) -> Cycles:
         angles_deg: (n, k), NaN where not known; an angle that is mostly not known is not used.
         time_s: (n,) increasing.
     """
-    usable = np.isfinite(angles_deg).mean(axis=0) > 0.5
+    usable = np.isfinite(angles_deg).sum(axis=0) > 0.5 * len(angles_deg)
     known = np.asarray(np.isfinite(angles_deg[:, usable]).all(axis=1))
     if known.sum() < 8 or not usable.any():
         return NONE

@@ -90,7 +90,8 @@ def person_part(
     sides = [values for course in courses for values in course.values_deg.values()]
     cycles = cycles_of(np.stack(sides, axis=1), time_s)
     shown = [course for course in courses if is_known(course)]
-    span_s = (float(time_s[0]), max(float(time_s[-1]), float(time_s[0]) + 0.1))
+    first_s, last_s = (float(time_s[0]), float(time_s[-1])) if len(time_s) else (0.0, 0.0)
+    span_s = (first_s, max(last_s, first_s + 0.1))
     listed = sorted(doubts(strip), key=lambda one: one.from_s - one.until_s)[:MOST_DOUBTS]
     return PersonPart(
         title,

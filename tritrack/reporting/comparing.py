@@ -39,7 +39,7 @@ def compare_runs(first: Path, second: Path) -> Facts:
     facts = [_line(part) for part in parts]
     try:
         with replacing(first / COMPARED) as new:
-            new.write_text(compare_html(*names, parts, facts))
+            new.write_bytes(compare_html(*names, parts, facts).encode(errors="replace"))
     except OSError as error:
         raise unwritable(first, error) from error
     return {
@@ -77,7 +77,9 @@ def _part(runs: tuple[PastRun, PastRun], numbers: tuple[int, int], titled: bool)
 
 
 def _line(part: ComparePart) -> str:
-    told = part.told
+    told, title = part.told, f"{part.title}: " if part.title else ""
+    if not told.both:
+        return f"{title}no frame in which both have a pose"
     joints, angles = (
         [each.median for each in offs if each.frames] for offs in (told.joints, told.angles)
     )
@@ -85,7 +87,7 @@ def _line(part: ComparePart) -> str:
     line = f"{middle} in the median, in {told.both} frames in which both have a pose"
     alone = f"; {told.one_alone} in which one alone has" if told.one_alone else ""
     where = f"; they part in {len(told.parts)} stretches" if told.parts else ""
-    return f"{part.title + ': ' if part.title else ''}{line}{alone}{where}"
+    return f"{title}{line}{alone}{where}"
 
 
 def _facts(part: ComparePart) -> dict[str, Any]:

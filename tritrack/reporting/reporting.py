@@ -83,7 +83,7 @@ def report_run(folder: Path, console: Console, tell: Tell) -> Facts:
     try:
         if find_spec("matplotlib") is not None:
             _write(folder / "angles.png", angle_plot(people[0].run.poses))
-        _write(folder / REPORT, html.encode())
+        _write(folder / REPORT, html.encode(errors="replace"))
     except OSError as error:
         raise unwritable(folder, error) from error
     return {"report": str(folder / REPORT), "overlay": drawn.video}
