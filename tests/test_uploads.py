@@ -58,6 +58,7 @@ def test_what_belongs_to_no_file_changes_nothing(uploads: Uploads) -> None:
         ("größe.mp4", "gr_e.mp4"),
         ("..", "video"),
         ("x" * 300 + ".mkv", "x" * 76 + ".mkv"),
+        ("walk." + "x" * 200, "walk." + "x" * 10),
     ],
 )
 def test_a_name_leads_nowhere_else(uploads: Uploads, tmp_path: Path, name: str, kept: str) -> None:
@@ -90,6 +91,36 @@ def test_a_file_that_would_leave_less_than_a_gigabyte_is_refused(
     with pytest.raises(UploadRefused, match="no space"):
         uploads.begin(Begin(1, "walk.mp4", 101))
     assert uploads.begin(Begin(1, "walk.mp4", 100)) in uploads.files
+
+
+def test_files_that_come_at_once_share_the_space(
+    uploads: Uploads, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    free = SimpleNamespace(free=SPARE_BYTES + 100)
+    monkeypatch.setattr("tritrack.starting.uploads.shutil.disk_usage", lambda _: free)
+    uploads.begin(Begin(1, "cam1.mp4", 60))
+    with pytest.raises(UploadRefused, match="no space"):
+        uploads.begin(Begin(2, "cam2.mp4", 41))
+    uploads.take(piece(1, 0, b"x" * 60))
+    assert uploads.begin(Begin(2, "cam2.mp4", 41)) in uploads.files
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
+def test_a_file_that_fills_the_disk_is_taken_away(uploads: Uploads) -> None:
+    """Closing it fails too: what is still to be written has no space either."""
+    found = uploads.begin(Begin(1, "walk.mp4", 700))
+    uploads._open[1].close()
+    uploads._open[1] = Path("/dev/full").open("wb")  # noqa: SIM115
+    uploads.take(piece(1, 0, b"x" * 600))
+    with pytest.raises(UploadRefused, match="free some space or take the file away"):
+        uploads.take(piece(1, 600, b"x" * 100))
+    uploads.begin(Begin(2, "walk.mp4", 700))
+    uploads._open[2].close()
+    uploads._open[2] = Path("/dev/full").open("wb")  # noqa: SIM115
+    uploads.take(piece(2, 0, b"x" * 600))
+    uploads.drop(2)
+    assert uploads.files == []
+    assert not found.path.exists()
 
 
 def test_a_disk_keeps_its_last_space(tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 import os
 import re
 import shutil
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Final
@@ -56,7 +57,8 @@ def safe_name(name: str) -> str:
     last = re.split(r"[\\/]", name)[-1]
     plain = re.sub(r"[^A-Za-z0-9._-]+", "_", last).lstrip("._-")
     stem, dot, suffix = plain.rpartition(".")
-    kept = f"{stem[: MOST_LETTERS - len(suffix) - 1]}.{suffix[:10]}" if dot and stem else plain
+    suffix = suffix[:10]
+    kept = f"{stem[: MOST_LETTERS - len(suffix) - 1]}.{suffix}" if dot and stem else plain
     return kept[:MOST_LETTERS] or "video"
 
 
@@ -119,7 +121,8 @@ class Uploads:
                 f"{name} has {wish.bytes / 1e9:.1f} GB, the page takes {most / 1e9:.1f} at most: "
                 "name it in the command instead"
             )
-        if wish.bytes + SPARE_BYTES > shutil.disk_usage(self._folder).free:
+        due = sum(one.bytes - one.got for one in self.files)  # of those that still come
+        if wish.bytes + due + SPARE_BYTES > shutil.disk_usage(self._folder).free:
             raise UploadRefused(f"{name}: there is no space for it on the disk: free some")
         found.path.parent.mkdir()
         self._open[wish.file] = found.path.open("xb")
@@ -157,7 +160,8 @@ class Uploads:
         for one in [one for one in self.files if number in (None, one.number)]:
             file = self._open.pop(one.number, None)
             if file is not None:
-                file.close()
+                with suppress(OSError):  # a full disk takes what is still to be written no better
+                    file.close()
             shutil.rmtree(one.path.parent, ignore_errors=True)
             self.files.remove(one)
 
