@@ -8,10 +8,12 @@ import cv2
 import numpy as np
 import pytest
 
+from animator.start.sections import encoded
 from common.video.decoding import Decoder
 from tritrack.starting.run_list import (
     MOST_SHOWN,
     RunFiles,
+    _frame_or_paper,
     bound_of,
     files_of,
     found_runs,
@@ -163,3 +165,37 @@ def test_a_run_without_its_video_is_drawn_on_paper(tmp_path: Path, recorded_run:
     assert picture is not None
     assert picture.shape[1] >= 160
     assert np.median(picture) > 230
+
+
+def test_a_run_and_videos_whose_names_are_no_unicode_are_listed(tmp_path: Path) -> None:
+    """As of an archive from another system; JSON holds their bytes as half characters."""
+    name = os.fsdecode(b"caf\xe9")
+    run_in(tmp_path / name, 1000.0, run_of={"command": "single", "footage": [f"{name}.avi"]})
+    shown = shown_runs(found_runs(tmp_path), {name: 1000.0})
+    assert shown.runs[0].picture == "run/caf%E9/picture.jpg?1000"
+    assert json.loads(encoded(shown))["runs"][0]["what"] == f"one camera: {name}.avi"
+
+
+def test_a_folder_that_may_not_be_read_hides_no_run(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As lost+found, where the runs have a disk of their own."""
+
+    def is_run(folder: Path) -> bool:
+        if folder.name == "lost+found":
+            raise PermissionError(13, "Permission denied")
+        return True
+
+    monkeypatch.setattr("tritrack.starting.run_list.is_run", is_run)
+    for name in ("lost+found", "walk"):
+        run_in(tmp_path / name, 1000.0)
+    assert [run.folder.name for run in found_runs(tmp_path)] == ["walk"]
+
+
+def test_a_joint_far_outside_the_picture_makes_no_huge_paper(tmp_path: Path) -> None:
+    run = RunFiles(tmp_path, 0.0, {})
+    joints_px = np.array([[10.0, 20.0], [1e9, 3e9]])
+    with Decoder() as decoder:
+        image, width_px = _frame_or_paper(run, decoder, 0, joints_px, (320, 240))
+    assert image.shape == (960, 1280, 3)
+    assert width_px == 1280

@@ -1,5 +1,7 @@
 """The files beside the runs: placed for a job, cleaned, deleted; and what may be served of them."""
 
+import os
+import shutil
 from pathlib import Path
 
 import pytest
@@ -40,6 +42,8 @@ def test_what_is_offered_is_served(runs: Path) -> None:
     assert got(runs, "/camera/video0.jpg") == b"frame"
     written(runs / "a run ü/poses.npz")
     assert got(runs, "/run/a%20run%20%C3%BC/poses.npz") == b"poses.npz"
+    written(runs / os.fsdecode(b"caf\xe9/poses.npz"))
+    assert got(runs, "/run/caf%E9/poses.npz") == b"poses.npz"
     written(runs / "walk/body_person2.bvh")
     assert got(runs, "/run/walk/body_person2.bvh") == b"body_person2.bvh"
 
@@ -66,7 +70,7 @@ def test_a_report_is_shown_without_a_script_and_the_rest_is_only_loaded(runs: Pa
         *("/calibration/room.txt", "/calibration/../walk/poses.csv", "/calibration/.json"),
         *("/calibration/..%2Fwalk%2Fposes.csv", "/camera/video1.jpg", "/", "", "/run"),
         *("/run/walk/poses.csv/", "/run/walk/poses.csv%00", "/run/linked/poses.csv"),
-        *("/calibration/linked.json", "/calibration/plain"),
+        *("/calibration/linked.json", "/calibration/plain", f"/run/{'a' * 300}/poses.csv"),
     ],
 )
 def test_nothing_else_is(runs: Path, path: str) -> None:
@@ -115,3 +119,12 @@ def test_what_is_no_run_is_not_deleted(runs: Path, name: str) -> None:
     before = sorted(runs.parent.rglob("*"))
     assert not delete_run(runs, name)
     assert sorted(runs.parent.rglob("*")) == before
+
+
+def test_a_run_of_which_something_is_left_is_not_said_to_be_deleted(
+    runs: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As where a file in it is another user's."""
+    monkeypatch.setattr(shutil, "rmtree", lambda path, ignore_errors: None)
+    with pytest.raises(PlanError, match="walk is left: see that you may write it"):
+        delete_run(runs, "walk")

@@ -143,6 +143,7 @@ def test_every_wish_is_read_back(wish: Wish) -> None:
     [
         *(b"", b"{", b"[]", b"\xff", b"\0short", b'{"type": "format"}', b'{"type": "work"}'),
         *(b'{"type": "cancel", "job": "1"}', b'{"type": "cancel", "job": 1, "more": 1}'),
+        b'{"type": "begin", "file": 1, "name": "a", "bytes": 1' + b"0" * 400 + b"}",
         *(b'{"type": "export", "run": "a", "to": 3}', b"[" * 5000),
         b'{"type": "export", "run": "' + b"x" * MOST_TEXT_BYTES + b'", "to": "bvh"}',
     ],
@@ -150,3 +151,8 @@ def test_every_wish_is_read_back(wish: Wish) -> None:
 def test_what_is_no_wish_is_refused(said: bytes) -> None:
     with pytest.raises(WishError):
         heard(said)
+
+
+def test_a_name_that_is_no_unicode_is_sent_escaped() -> None:
+    told = json.loads(encoded(Told("caf\udce9.avi", well=True)))
+    assert told == {"kind": "told", "text": "caf\udce9.avi", "well": True}

@@ -1,5 +1,6 @@
 """Wishes against what is there now: what is planned, and what is refused."""
 
+import os
 from pathlib import Path
 
 import pytest
@@ -71,3 +72,9 @@ def test_what_is_not_there_is_refused(there: There, wish: Live, says: str) -> No
     with pytest.raises(PlanError, match=says):
         plan_of(wish, there)
     assert not (there.runs / ".settings").exists()
+
+
+def test_a_camera_whose_file_the_settings_cannot_name_is_refused(there: There) -> None:
+    named = there._replace(sources={"file0": os.fsdecode(b"caf\xe9.avi")})
+    with pytest.raises(PlanError, match="rename it"):
+        plan_of(Live(("file0",)), named)

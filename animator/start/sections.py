@@ -1,5 +1,6 @@
 """What the start page says to browsers: its sections as JSON, and answers to wishes."""
 
+import json
 from typing import Any, Literal
 
 import msgspec
@@ -165,5 +166,8 @@ class Told(msgspec.Struct, frozen=True, tag_field="kind", tag="told"):
 
 
 def encoded(message: Any) -> bytes:
-    """A message for browsers."""
-    return msgspec.json.encode(message)
+    """A message for browsers; a file's name that is no Unicode is sent with its bytes escaped."""
+    try:
+        return msgspec.json.encode(message)
+    except UnicodeEncodeError:
+        return json.dumps(msgspec.to_builtins(message)).encode()

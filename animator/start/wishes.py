@@ -1,7 +1,7 @@
 """What browsers say to the start page: wishes as JSON, and files in pieces."""
 
 import struct
-from typing import Final, Literal
+from typing import Annotated, Final, Literal
 
 import msgspec
 
@@ -13,6 +13,9 @@ MOST_SAID_BYTES: Final = CHUNK_BYTES + CHUNK_HEAD.size
 """Upper bound of a browser's message, bytes."""
 MOST_TEXT_BYTES: Final = 10_000
 """Upper bound of one that is no piece of a file, bytes."""
+
+MOST_FILE_BYTES: Final = 1 << 62
+"""Upper bound of what a browser may say of a file's size, bytes."""
 
 Task = Literal["single", "track", "person", "board", "import"]
 """A job for the dropped files."""
@@ -34,7 +37,7 @@ class Begin(Wish, frozen=True):
     file: int
     """A number of the browser's choice."""
     name: str
-    bytes: int
+    bytes: Annotated[int, msgspec.Meta(le=MOST_FILE_BYTES)]
 
 
 class Drop(Wish, frozen=True):

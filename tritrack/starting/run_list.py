@@ -1,6 +1,7 @@
 """The runs of a folder: what each was, how well it went, its picture and its files."""
 
 import json
+import os
 import time
 from collections.abc import Mapping
 from contextlib import suppress
@@ -34,6 +35,9 @@ OFFERED: Final = (
     *("poses.npz", "summary.json", "posture.json", "recording.mcap"),
 )
 """Files of a run that may be downloaded; exports of one of several people besides."""
+MOST_PAPER: Final = 4
+"""Largest side of the paper behind a body, over that of the run's working picture: a joint beside
+the camera lies far outside."""
 RECORDING: Final = "recording.mcap"
 WORDS: Final = {"single": "one camera", "replay": "replayed"}
 
@@ -50,9 +54,11 @@ class RunFiles(NamedTuple):
 def run_folder(runs: Path, name: str) -> Path | None:
     """A run by its name; None where there is none, or the name would lead elsewhere."""
     folder = runs / name
-    if not name or name.startswith(".") or name != folder.name or folder.is_symlink():
+    if not name or name.startswith(".") or name != folder.name:
         return None
-    return folder if folder.is_dir() and is_run(folder) else None
+    with suppress(OSError):  # a folder that we may not read, or too long a name
+        return folder if not folder.is_symlink() and folder.is_dir() and is_run(folder) else None
+    return None
 
 
 def run_file(runs: Path, name: str, file: str) -> Path | None:
@@ -106,7 +112,7 @@ def shown_runs(found: list[RunFiles], pictures: Mapping[str, float]) -> Runs:
 def shown_run(run: RunFiles, pictured: float = 0.0) -> ShownRun:
     """One of them."""
     name, told = run.folder.name, run.summary
-    at = f"run/{quote(name)}"
+    at = f"run/{quote(os.fsencode(name))}"
     files = files_of(run.folder)
     believed, frames = told.get("believed"), told.get("frames")
     return ShownRun(
@@ -216,6 +222,6 @@ def _frame_or_paper(
             return image, working_size(size, bound)[0]
         except (Undecodable, DecoderDied, StopIteration):
             pass
-    low = joints_px.max(axis=0) + 8
-    width, height = max(int(low[0]), bound[0]), max(int(low[1]), bound[1])
+    low = np.clip(joints_px.max(axis=0) + 8, bound, np.multiply(bound, MOST_PAPER))
+    width, height = int(low[0]), int(low[1])
     return np.full((height, width, 3), 245, np.uint8), width

@@ -28,9 +28,7 @@ from common.video.decoding import Decoder
 from runtime.store.run_exports import OWN_NAMES
 from tritrack.starting.aside import Aside
 from tritrack.starting.calibration_list import remove_calibration
-from tritrack.starting.job_plan import (
-    PlanError,
-)
+from tritrack.starting.job_plan import PlanError
 from tritrack.starting.job_queue import Job, JobQueue
 from tritrack.starting.start_files import clean, delete_run, place, served
 from tritrack.starting.start_lists import StartLists
@@ -64,14 +62,14 @@ class StartDesk:
     """
 
     def __init__(self, given: Given, queue: JobQueue | None = None) -> None:
-        self._runs = given.runs
+        self._runs = given.runs.absolute()  # no command may take a folder's name for an option
         self._queue = JobQueue() if queue is None else queue
-        self._uploads = Uploads(given.runs / FOLDER)
+        self._uploads = Uploads(self._runs / FOLDER)
         self._facts: dict[int, Facts] = {}
         self._late_s: dict[tuple[int, int], float | None] = {}
         """By the numbers of the first and another video, where asked for."""
         self._aside = Aside()
-        self._lists = StartLists(given.runs, given.videos, self._aside)
+        self._lists = StartLists(self._runs, given.videos, self._aside)
         self._jobs_due_s = 0.0
         clean(self._runs, self._queue.uses)
 
@@ -100,13 +98,16 @@ class StartDesk:
             except (WishError, UploadRefused, PlanError) as error:
                 page.tell(Told(str(error), well=False))
             except OSError as error:
-                page.tell(Told(unwritten(self._runs, error, "see that you may write it"), False))
+                page.tell(self._unwritten(error))
         self._aside.turn()
         self._hear_sounds()
         page.show(shown_tray(self._uploads.files, self._facts, self._late_s))
         if time.monotonic() >= self._jobs_due_s:
             self._jobs_due_s = time.monotonic() + JOBS_S
-            self._show_jobs(page)
+            try:
+                self._show_jobs(page)
+            except OSError as error:
+                page.tell(self._unwritten(error))
         self._lists.turn(page)
 
     def close(self) -> None:
@@ -116,6 +117,9 @@ class StartDesk:
         self._aside.close()
         self._uploads.close()
         clean(self._runs, lambda _: False)
+
+    def _unwritten(self, error: OSError) -> Told:
+        return Told(unwritten(self._runs, error, "see that you may write it"), well=False)
 
     def _do(self, wish: AnyWish | Chunk, page: StartPage) -> None:
         """Carry out one wish.

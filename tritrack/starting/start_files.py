@@ -60,12 +60,18 @@ def clean(runs: Path, is_used: Callable[[Path], bool]) -> None:
 
 
 def delete_run(runs: Path, name: str) -> bool:
-    """Delete a run with its own videos; False where there is no such run."""
+    """Delete a run with its own videos; False where there is no such run.
+
+    Raises:
+        PlanError: When something of it is left.
+    """
     folder = run_folder(runs, name)
     if folder is None:
         return False
     for path in (folder, runs / CLIPS / name, runs / SETTINGS / f"{name}.toml"):
         remove(path)
+        if path.exists():
+            raise PlanError(f"a part of {path} is left: see that you may write it, and delete it")
     return True
 
 
@@ -91,7 +97,7 @@ def served(
         pictures: JPEGs of runs by name.
         camera_jpeg: Gives a camera's newest picture.
     """
-    parts = unquote(path).split("/")[1:]
+    parts = unquote(path, errors="surrogateescape").split("/")[1:]
     jpeg, found = None, None
     if len(parts) == 3 and parts[0] == "run" and parts[2] == PICTURE:
         jpeg = pictures.get(parts[1])

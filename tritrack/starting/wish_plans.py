@@ -107,5 +107,8 @@ def _plan_of_cameras(wish: Live, there: There) -> Plan:
     sources, port = [there.sources[each] for each in wish.cameras], free_port()
     file = runs / SETTINGS / f"{name}.toml"
     file.parent.mkdir(exist_ok=True)
-    file.write_text(live_settings(sources, port, rig, wish.pictures), "utf-8")
+    try:
+        file.write_text(live_settings(sources, port, rig, wish.pictures), "utf-8")
+    except UnicodeEncodeError as error:
+        raise PlanError("a file's name is no Unicode, which settings must be: rename it") from error
     return live_plan(file, known, name)
