@@ -103,7 +103,7 @@ def test_who_was_killed_is_named_and_all_is_well_when_it_is_back(
     )
     stop = threading.Event()
     outsider = Outsider(settings.metrics, victim, stop)
-    monkeypatch.setattr(session, "_stopped_by_signals", lambda _: nullcontext(stop))
+    monkeypatch.setattr(session, "stopped_by_signals", lambda _: nullcontext(stop))
     outsider.start()
     facts = live(settings, tmp_path / "out", Console(quiet=True))
     outsider.join()

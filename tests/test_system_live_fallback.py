@@ -180,7 +180,7 @@ def harmed_run(long_clip: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     def run(harm: Callable[[Witness], None]) -> tuple[dict[str, Any], Witness]:
         settings = settings_of(long_clip)
         with Witness(settings.bus, harm) as witness:
-            monkeypatch.setattr(session, "_stopped_by_signals", lambda _: nullcontext(witness.over))
+            monkeypatch.setattr(session, "stopped_by_signals", lambda _: nullcontext(witness.over))
             return live(settings, tmp_path, Console(quiet=True)), witness
 
     return run

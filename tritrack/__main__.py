@@ -42,6 +42,7 @@ from tritrack.commands.live_commands import (
 )
 from tritrack.commands.model_commands import evaluate_app, teach, train
 from tritrack.commands.options import Out
+from tritrack.commands.record_command import record
 from tritrack.commands.report_commands import compare, report
 from tritrack.commands.rig_commands import calibrate_app
 from tritrack.commands.start_command import start
@@ -140,7 +141,7 @@ def bench(
 
 COMMANDS: Final = (
     *(start, single, track, live, export),
-    *(demo, replay, retouch, report, compare, synth, train, teach, doctor, bench),
+    *(record, demo, replay, retouch, report, compare, synth, train, teach, doctor, bench),
     *(serve, view, integrate, recognize, animate, metrics, bridge, keys),
 )
 """In the order of the help: the five main uses first, the parts of a rig over hosts last."""

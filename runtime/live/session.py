@@ -76,7 +76,7 @@ def live(
     new = not out.exists()
     began, heard = time.monotonic(), nothing_heard()
     title = name or Path(settings.clip).name or "tritrack"
-    with _stopped_by_signals(console) as stop, ExitStack() as doors:
+    with stopped_by_signals(console) as stop, ExitStack() as doors:
         log = new_log(out)
         launcher = platform().launcher(WARMED)
         desk = PageDesk(settings, out, title, ProcessContext(True, log), launcher)
@@ -189,7 +189,8 @@ def _opened_or_nothing(settings: Settings, name: str, out: Path, *, new: bool) -
 
 
 @contextmanager
-def _stopped_by_signals(console: Console) -> Iterator[threading.Event]:
+def stopped_by_signals(console: Console) -> Iterator[threading.Event]:
+    """An event that Ctrl-C, a closed terminal or SIGTERM sets: what goes on ends in order."""
     stop = threading.Event()
 
     def end(number: int, _frame: FrameType | None) -> None:

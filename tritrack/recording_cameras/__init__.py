@@ -1,0 +1,1 @@
+"""Cameras recorded into a clip folder: `tritrack record`."""
