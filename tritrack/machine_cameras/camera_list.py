@@ -14,7 +14,7 @@ TRIED: Final = 4
 NONE: Final = (
     "This machine has no camera that the system knows. Plug one in, then look again; where it is "
     "plugged in, see that you may use it (group video) and that tritrack doctor names it. A "
-    "recorded video plays as a camera with: tritrack start --camera VIDEO"
+    "recorded video plays as a camera: --camera VIDEO"
 )
 
 
