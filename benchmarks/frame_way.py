@@ -110,7 +110,11 @@ def _follow(root: Path, watch: Callable[..., None]) -> None:
 
 def _compiled() -> dict[CodeType, Dispatcher]:
     """Every compiled function that is loaded, by its code."""
-    values = [value for module in [*sys.modules.values()] for value in [*vars(module).values()]]
+    values = [
+        value
+        for module in [*sys.modules.values()]
+        for value in [*getattr(module, "__dict__", {}).values()]
+    ]
     return {each.py_func.__code__: each for each in values if isinstance(each, Dispatcher)}
 
 
