@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from viewer.captured_frame import CapturedFrame
-from viewer.load_shedding import LASTS_S, LATE, LoadShedder
+from viewer.load_shedding import LASTS_S, LATE, LATE_OF_SEVERAL, LoadShedder
 
 PERIOD_S = 1 / 15
 FRAME = CapturedFrame(0, 0.0, 0.0, np.zeros((2, 2, 3), np.uint8))
@@ -75,3 +75,10 @@ def test_a_hurry_lasts_a_third_of_a_second_at_any_rate(period_s: float, lasts: i
     shedder = LoadShedder(period_s)
     told = [shedder.of_frame(FRAME, late_s).hurried for late_s in (0.2 * period_s, *[0.0] * 15)]
     assert told == [True] * lasts + [False] * (16 - lasts)
+
+
+def test_where_everyone_is_followed_a_viewer_keeps_its_landmarks_for_a_whole_period() -> None:
+    """Three viewers at once wait for each other; without landmarks they lose the second person."""
+    shedder = LoadShedder(PERIOD_S, LATE_OF_SEVERAL)
+    assert not shedder.of_frame(FRAME, 0.9 * PERIOD_S).hurried
+    assert shedder.of_frame(FRAME, 1.1 * PERIOD_S).hurried

@@ -30,7 +30,7 @@ from viewer.background.new_background import Learning
 from viewer.capture import Live, RoomClock
 from viewer.captured_frame import CapturedFrame
 from viewer.landmarks.landmark_sources import outside_sources
-from viewer.load_shedding import LoadShedder
+from viewer.load_shedding import LATE, LATE_OF_SEVERAL, LoadShedder
 from viewer.resend_buffer import ResendBuffer
 from viewer.room.background_source import keep, opening_of_run
 from viewer.viewer_warmup import warm_up
@@ -112,13 +112,15 @@ def run(prepared: Prepared, live: Live, bus: Bus, stop: threading.Event) -> None
         stop: Ends it early.
     """
     view, state, warnings, _ = prepared
-    period_s = state.setup.settings.every / view.fps
+    settings = state.setup.settings
+    period_s = settings.every / view.fps
     pace = Pace(period_s)
     heart = Heart(bus, f"viewer {view.number}", pace)
     guides = Guides(bus.subscribe(Guide), view.number)
     unheard_reports, alive = ResendBuffer(), bus.watch_alive()
     learning = Learning(bus.subscribe(Command), view.number, _empty_frames(state, view))
-    shedder, before, why = LoadShedder(period_s), -1, ""
+    late = LATE if settings.people == 1 else LATE_OF_SEVERAL
+    shedder, before, why = LoadShedder(period_s, late), -1, ""
     try:
         while not stop.is_set() and not live.over:
             frame = live.take(period_s)

@@ -8,6 +8,9 @@ from viewer.captured_frame import CapturedFrame
 
 LATE: Final = 0.15
 """Delay, in frame periods, up to which a viewer keeps its landmarks."""
+LATE_OF_SEVERAL: Final = 1.0
+"""The same where everyone is followed: without landmarks nobody is told from another, so a viewer
+that waits for its turn beside the others keeps them; one that a frame waits for sheds."""
 LASTS_S: Final = 1.0 / 3.0
 """Duration of load shedding once begun, seconds: five frames at 15 Hz. At most that many frames
 in a row go without landmarks."""
@@ -22,17 +25,17 @@ class LoadShedder:
     still give the joints in between.
     """
 
-    def __init__(self, period_s: float) -> None:
-        """Start for a given frame period."""
+    def __init__(self, period_s: float, late: float = LATE) -> None:
+        """Start for a given frame period, and delay in such periods."""
         self.frames = 0
         """Number of frames processed without landmarks."""
-        self._period_s = period_s
+        self._late_s = late * period_s
         self._lasts = max(1, round(LASTS_S / period_s))
         self._left = self._in_a_row = 0
 
     def of_frame(self, frame: CapturedFrame, late_s: float) -> CapturedFrame:
         """The frame, marked as late where its delay requires load shedding."""
-        self._left = self._lasts if late_s > LATE * self._period_s else max(self._left - 1, 0)
+        self._left = self._lasts if late_s > self._late_s else max(self._left - 1, 0)
         if not self._left or self._in_a_row >= self._lasts:
             self._in_a_row = 0
             return frame
