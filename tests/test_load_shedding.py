@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from viewer.captured_frame import CapturedFrame
-from viewer.load_shedding import LASTS_S, LATE, LATE_OF_SEVERAL, LoadShedder
+from viewer.load_shedding import LASTS_S, LATE, LoadShedder
 
 PERIOD_S = 1 / 15
 FRAME = CapturedFrame(0, 0.0, 0.0, np.zeros((2, 2, 3), np.uint8))
@@ -16,7 +16,7 @@ FRAME = CapturedFrame(0, 0.0, 0.0, np.zeros((2, 2, 3), np.uint8))
 
 def hurried(late_s: list[float]) -> list[bool]:
     """Of frames that are so late."""
-    shedder = LoadShedder(PERIOD_S)
+    shedder = LoadShedder(PERIOD_S, 1)
     return [shedder.of_frame(FRAME, late).hurried for late in late_s]
 
 
@@ -47,13 +47,13 @@ def test_never_more_than_five_looks_in_a_row_are_left_out_nor_one_without_a_late
 
 
 def test_a_frame_in_a_hurry_is_the_same_picture_of_the_same_moment() -> None:
-    kept = LoadShedder(PERIOD_S).of_frame(FRAME, 1.0)
+    kept = LoadShedder(PERIOD_S, 1).of_frame(FRAME, 1.0)
     assert (kept.index, kept.captured_s, kept.clock_s) == (0, 0.0, 0.0)
     assert kept.picture is FRAME.picture
 
 
 def test_at_the_end_it_is_told_how_many_were_and_what_to_do_but_not_of_a_few() -> None:
-    shedder = LoadShedder(PERIOD_S)
+    shedder = LoadShedder(PERIOD_S, 1)
     for late_s in (0.1, *[0.0] * 4):
         shedder.of_frame(FRAME, late_s)
     assert shedder.frames == 5
@@ -64,7 +64,7 @@ def test_at_the_end_it_is_told_how_many_were_and_what_to_do_but_not_of_a_few() -
 
 @pytest.mark.parametrize(("frames", "told"), [(250, False), (249, True)])
 def test_two_in_a_hundred_frames_may_be_hurried_without_a_word(frames: int, told: bool) -> None:
-    shedder = LoadShedder(PERIOD_S)
+    shedder = LoadShedder(PERIOD_S, 1)
     shedder.frames = 5
     assert bool(shedder.odd(frames)) == told
     assert shedder.odd(40).startswith("5 of 40 frames came too late to be looked into, only their")
@@ -72,13 +72,13 @@ def test_two_in_a_hundred_frames_may_be_hurried_without_a_word(frames: int, told
 
 @pytest.mark.parametrize(("period_s", "lasts"), [(1 / 30, 10), (1 / 4, 1), (1.0, 1)])
 def test_a_hurry_lasts_a_third_of_a_second_at_any_rate(period_s: float, lasts: int) -> None:
-    shedder = LoadShedder(period_s)
+    shedder = LoadShedder(period_s, 1)
     told = [shedder.of_frame(FRAME, late_s).hurried for late_s in (0.2 * period_s, *[0.0] * 15)]
     assert told == [True] * lasts + [False] * (16 - lasts)
 
 
 def test_where_everyone_is_followed_a_viewer_keeps_its_landmarks_for_a_whole_period() -> None:
     """Three viewers at once wait for each other; without landmarks they lose the second person."""
-    shedder = LoadShedder(PERIOD_S, LATE_OF_SEVERAL)
+    shedder = LoadShedder(PERIOD_S, "all")
     assert not shedder.of_frame(FRAME, 0.9 * PERIOD_S).hurried
     assert shedder.of_frame(FRAME, 1.1 * PERIOD_S).hurried

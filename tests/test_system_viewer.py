@@ -271,7 +271,7 @@ def test_a_background_takes_half_a_second_of_the_frames_that_are_looked_at(
 
 
 def test_the_news_are_each_told_under_their_name() -> None:
-    guides, shedder = Guides(Taken(), 2), LoadShedder(1 / 15)  # type: ignore[arg-type]
+    guides, shedder = Guides(Taken(), 2), LoadShedder(1 / 15, 1)  # type: ignore[arg-type]
     guides.misses, shedder.frames = 7, 8
     live = SimpleNamespace(odd=("slow", "gone"), dropped=6)
     assert _news(live, guides, shedder, ("a", "b")) == {  # type: ignore[arg-type]

@@ -30,7 +30,7 @@ from viewer.background.new_background import Learning
 from viewer.capture import Live, RoomClock
 from viewer.captured_frame import CapturedFrame
 from viewer.landmarks.landmark_sources import outside_sources
-from viewer.load_shedding import LATE, LATE_OF_SEVERAL, LoadShedder
+from viewer.load_shedding import LoadShedder
 from viewer.resend_buffer import ResendBuffer
 from viewer.room.background_source import keep, opening_of_run
 from viewer.viewer_warmup import warm_up
@@ -119,8 +119,7 @@ def run(prepared: Prepared, live: Live, bus: Bus, stop: threading.Event) -> None
     guides = Guides(bus.subscribe(Guide), view.number)
     unheard_reports, alive = ResendBuffer(), bus.watch_alive()
     learning = Learning(bus.subscribe(Command), view.number, _empty_frames(state, view))
-    late = LATE if settings.people == 1 else LATE_OF_SEVERAL
-    shedder, before, why = LoadShedder(period_s, late), -1, ""
+    shedder, before, why = LoadShedder(period_s, settings.people), -1, ""
     try:
         while not stop.is_set() and not live.over:
             frame = live.take(period_s)

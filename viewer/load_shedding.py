@@ -1,6 +1,6 @@
 """Load shedding: a late viewer skips its most expensive part, the landmark network."""
 
-from typing import Final
+from typing import Final, Literal
 
 import msgspec
 
@@ -9,7 +9,7 @@ from viewer.captured_frame import CapturedFrame
 LATE: Final = 0.15
 """Delay, in frame periods, up to which a viewer keeps its landmarks."""
 LATE_OF_SEVERAL: Final = 1.0
-"""The same where everyone is followed: without landmarks nobody is told from another, so a viewer
+"""The same where everyone is followed: without landmarks people cannot be kept apart, so a viewer
 that waits for its turn beside the others keeps them; one that a frame waits for sheds."""
 LASTS_S: Final = 1.0 / 3.0
 """Duration of load shedding once begun, seconds: five frames at 15 Hz. At most that many frames
@@ -25,11 +25,11 @@ class LoadShedder:
     still give the joints in between.
     """
 
-    def __init__(self, period_s: float, late: float = LATE) -> None:
-        """Start for a given frame period, and delay in such periods."""
+    def __init__(self, period_s: float, people: Literal[1, "all"]) -> None:
+        """Start for a given frame period, and the people who are followed."""
         self.frames = 0
         """Number of frames processed without landmarks."""
-        self._late_s = late * period_s
+        self._late_s = (LATE if people == 1 else LATE_OF_SEVERAL) * period_s
         self._lasts = max(1, round(LASTS_S / period_s))
         self._left = self._in_a_row = 0
 

@@ -140,21 +140,30 @@ def synth(
     from synth.write import ClipSet
     from tritrack.making import make_clips
 
+    of_scenes = {"--seconds": seconds, "--alone": alone, "--no-opening": not opening}
+    of_one = {"--motion": motion, "--performers": performers, "--moving": moving}
+    refuse_mixed(people is not None, of_scenes, of_one)
+    only = tuple(posture or ())
     wanted: ClipSet | SceneSet
     if people is None:
-        scenes = {"--seconds": seconds, "--alone": alone, "--no-opening": not opening}
-        refuse_given(scenes, because="needs --people: other clips have their own")
-        some = (motion or "postures", performers or 1, takes, seed, tuple(posture or ()), cameras)
+        some = (motion or "postures", performers or 1, takes, seed, only, cameras)
         wanted = ClipSet(*some, moving=bool(moving))
     else:
-        single = {"--motion": motion, "--performers": performers, "--moving": moving}
-        refuse_given(single, because="is of clips of one person: leave it or --people out")
         lasts_s = SCENE_S if seconds is None else seconds
-        of_each = (opening, alone, tuple(posture or ()))
-        wanted = SceneSet(people, lasts_s, takes, seed, cameras, *of_each)
+        wanted = SceneSet(people, lasts_s, takes, seed, cameras, opening, alone, only)
     made = make_clips(out, wanted, size, console)
     facts = {"clips": [str(folder) for folder in made]}
     tell(facts, json_wanted, f"{counted(len(made), 'clip')} written to {out}")
+
+
+def refuse_mixed(
+    are_scenes: bool, of_scenes: Mapping[str, object], of_one: Mapping[str, object]
+) -> None:
+    """Refuse what was given for clips of another kind: scenes, or clips of one person."""
+    if are_scenes:
+        refuse_given(of_one, because="is of clips of one person: leave it or --people out")
+    else:
+        refuse_given(of_scenes, because="needs --people: other clips have their own")
 
 
 def single(

@@ -12,6 +12,8 @@ from tritrack.commands.options import Forced, fov_given, square_given, stature_g
 from tritrack.extras import refuse_without
 
 if TYPE_CHECKING:
+    from calibration.person.rig_quality import Quality
+    from calibration.tracks.camera_clocks import Clocks
     from runtime.offline.rig_of_boards import Shown
 
 calibrate_app = typer.Typer(
@@ -29,6 +31,20 @@ Page = Annotated[
 Port = Annotated[
     int | None, typer.Option(min=1, max=65535, help="Port of the page, instead of the settings'.")
 ]
+
+
+def line_of_clocks(count: int, quality: "Quality", clocks: "Clocks") -> str:
+    """How nearly so many views agree, and how late they are."""
+    late = ", ".join(
+        f"{round(frames, 1) + 0.0:+.1f}" + ("" if clock.is_found else f" ({clock.state})")
+        for frames, clock in zip(quality.late_frames, clocks, strict=True)
+    )
+    views = "both views" if count == 2 else f"{count} views"
+    behind = "view 2 is" if count == 2 else f"views 2 to {count} are"
+    return (
+        f"{views} agree to {quality.gap_mm:.0f} mm in {counted(quality.moments, 'moment')}; "
+        f"{behind} late by {late} frames"
+    )
 
 
 @calibrate_app.command()
@@ -63,17 +79,8 @@ def person(
     rig, quality, clocks, heard = calibrated_by_clips(clips, Given(stature, fov))
     write_rig(out, rig, quality)
     tell_rows(quality.cameras, json_wanted)
-    late = ", ".join(
-        f"{round(frames, 1) + 0.0:+.1f}" + ("" if clock.is_found else f" ({clock.state})")
-        for frames, clock in zip(quality.late_frames, clocks, strict=True)
-    )
-    views = "both views" if len(rig.cameras) == 2 else f"{len(rig.cameras)} views"
-    behind = "view 2 is" if len(rig.cameras) == 2 else f"views 2 to {len(rig.cameras)} are"
     console.print(
-        f"{views} agree to {quality.gap_mm:.0f} mm in {counted(quality.moments, 'moment')}; "
-        f"{behind} late by {late} frames",
-        highlight=False,
-        soft_wrap=True,
+        line_of_clocks(len(rig.cameras), quality, clocks), highlight=False, soft_wrap=True
     )
     for word in heard:
         console.print(word, highlight=False, soft_wrap=True)
