@@ -1,11 +1,13 @@
 """The page's commands as processes: one at a time, a few that wait, each of which can be ended."""
 
+import subprocess
 import sys
 import time
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from test_own_process import ended_within, written
 from waiting import until
 
 from tritrack.starting.job_plan import Plan, PlanError
@@ -94,6 +96,47 @@ def test_what_a_job_reads_and_writes_is_in_use_until_it_is_over(queue: JobQueue)
     assert ended(queue, job).state == "done"
     assert not queue.uses(Path("runs/.clips/walk"))
     assert queue.names == frozenset()
+
+
+def test_what_a_jobs_settings_name_is_in_use_too(queue: JobQueue) -> None:
+    rig = Path("runs/.calibrations/room.json")
+    job = queue.add(Plan("live", ("pass",), needs=(rig,)))
+    assert queue.uses(rig)
+    assert ended(queue, job).state == "done"
+    assert not queue.uses(rig)
+
+
+PAGE = """
+import sys, time
+from pathlib import Path
+from tritrack.starting.job_plan import Plan
+from tritrack.starting.job_queue import JobQueue
+queue = JobQueue((sys.executable, "-c"))
+queue.add(Plan("sleeps", (sys.argv[1],)))
+queue.turn()
+time.sleep(60)
+"""
+WORK = """
+import os, time, tritrack.stopping as it
+from pathlib import Path
+it.heed_in_order(); it.end_with_starter()
+Path({number!r}).write_text(str(os.getpid()))
+try:
+    time.sleep(60)
+finally:
+    Path({ended!r}).write_text("in order")
+"""
+
+
+def test_a_job_ends_in_order_when_its_page_is_killed(tmp_path: Path) -> None:
+    number, end = tmp_path / "number", tmp_path / "ended"
+    work = WORK.format(number=str(number), ended=str(end))
+    page = subprocess.Popen([sys.executable, "-c", PAGE, work])
+    job = written(number)
+    page.kill()
+    page.wait()
+    assert ended_within(job, 20.0)
+    assert end.read_text() == "in order"
 
 
 def test_closing_ends_what_runs(queue: JobQueue) -> None:

@@ -57,6 +57,7 @@ from animator.marking.sheet import (
     Shown,
     Solved,
 )
+from animator.page.wish_page import Told
 from calibration.paper.calibration import read_points, run_markers, run_poles
 from calibration.paper.poles import Poles
 from common.body.observation import Pixel
@@ -180,8 +181,8 @@ class Wishing:
     def show(self, shown: Shown) -> None:
         self.shown.append(shown)
 
-    def tell(self, text: str, well: bool) -> None:
-        self.told.append((text, well))
+    def tell(self, told: Told) -> None:
+        self.told.append((told.text, told.well))
 
     def close(self) -> None:
         self.closed = True

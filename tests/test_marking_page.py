@@ -36,6 +36,7 @@ from animator.marking.sheet import (
     Solved,
 )
 from animator.page.door import Entrance, cookie_of, invitation_of
+from animator.page.wish_page import Told
 
 SHOWN = Shown(Sheet((), {}), "", 0, Solved((Seen(False, "click"),), ()), "nothing kept", True)
 
@@ -115,7 +116,7 @@ def test_who_comes_is_told_what_to_click_and_the_newest_sheet(page: MarkingPage)
         assert (hello["kind"], hello["method"], hello["size"]) == ("hello", "poles", [640, 480])
         assert hello["run"] > 1
         assert json.loads(browser.recv(timeout=10))["kept"] == "points kept in poles.toml"
-        page.tell("written to calibration.json", True)
+        page.tell(Told("written to calibration.json", well=True))
         told = {"kind": "told", "text": "written to calibration.json", "well": True}
         assert json.loads(browser.recv(timeout=10)) == told
 

@@ -160,7 +160,10 @@ def test_a_browser_that_does_not_listen_holds_nobody_up(server: PageServer) -> N
     assert heard == sorted(heard)
 
 
-def test_what_a_browser_says_is_bounded(server: PageServer) -> None:
+def test_what_a_browser_says_is_bounded(
+    server: PageServer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("animator.page.page_server.PATIENCE_S", 0.2)
     with connect(socket_of(server)) as browser:
         browser.recv(timeout=10)
         for _ in range(10 * MOST_ASKED):
@@ -169,6 +172,24 @@ def test_what_a_browser_says_is_bounded(server: PageServer) -> None:
         while server.asked.qsize() < MOST_ASKED and time.monotonic() < until_s:
             time.sleep(0.01)
     assert server.asked.qsize() == MOST_ASKED
+
+
+def test_what_finds_no_room_at_once_is_heard_later_in_order_and_what_never_does_is_refused(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    server = PageServer(free_port(), lambda: [b"hello"], busy=b"busy")
+    count = 3 * MOST_ASKED
+    with connect(socket_of(server)) as browser:
+        browser.recv(timeout=10)
+        for number in range(count):
+            browser.send(str(number))
+        time.sleep(0.3)
+        assert [int(server.asked.get(timeout=5)) for _ in range(count)] == [*range(count)]
+        monkeypatch.setattr("animator.page.page_server.PATIENCE_S", 0.1)
+        for _ in range(MOST_ASKED + 1):
+            browser.send("more")
+        assert browser.recv(timeout=10) == "busy"
+    server.close()
 
 
 class Open(NamedTuple):

@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 import pytest
 
-from animator.start.sections import encoded
+from animator.page.wish_page import encoded
 from common.video.decoding import Decoder
 from tritrack.starting.run_list import (
     MOST_SHOWN,

@@ -265,6 +265,27 @@ def test_what_is_dropped_is_seen_at_once_and_can_be_taken_away(
     assert [path.name for path in (started.runs / ".uploads").iterdir()] == ["owner"]
 
 
+def drop(looking: Looking, *paths: Path) -> None:
+    """As a person drags them onto the page out of a window of files."""
+    data = {"items": [], "files": [str(path) for path in paths], "dragOperationsMask": 1}
+    for kind in ("dragEnter", "dragOver", "drop"):
+        looking.tab.call("Input.dispatchDragEvent", type=kind, x=200, y=200, data=data)
+
+
+def test_of_a_folder_its_videos_are_taken_and_one_without_is_named(
+    looking: Looking, clip: Path, tmp_path: Path
+) -> None:
+    (tmp_path / "my papers/more").mkdir(parents=True)
+    (tmp_path / "my papers/notes.txt").write_text("no video")
+    drop(looking, tmp_path / "my papers")
+    assert looking.until("document.querySelector('#told').innerText.includes('my papers')")
+    assert "no video" in words(looking, "#told")
+    drop(looking, clip)
+    assert looking.until("!!document.querySelector('#do-track')")
+    names = "[...document.querySelectorAll('#files h3')].map(e => e.innerText).join()"
+    assert looking.ask(names) == "camera 1: cam1.avi,camera 2: cam2.avi"
+
+
 def test_large_files_come_whole_in_pieces_beside_each_other(
     looking: Looking, started: Started, tmp_path: Path
 ) -> None:

@@ -7,7 +7,8 @@ from typing import Any
 import pytest
 from waiting import until
 
-from tritrack.starting.job_plan import Plan
+from animator.start.wishes import Delete, Wish
+from tritrack.starting.job_plan import Plan, kept_calibration
 from tritrack.starting.job_queue import JobQueue
 from tritrack.starting.start_desk import Given, StartDesk
 
@@ -15,11 +16,12 @@ from tritrack.starting.start_desk import Given, StartDesk
 class Page:
     """Keeps what it is given to show."""
 
-    def __init__(self) -> None:
+    def __init__(self, *wishes: Wish) -> None:
         self.told: list[str] = []
+        self._wishes = list(wishes)
 
-    def next_wish(self) -> None:
-        """Nothing is wished."""
+    def next_wish(self) -> Wish | None:
+        return self._wishes.pop(0) if self._wishes else None
 
     def show(self, section: Any) -> None:
         """Not looked at here."""
@@ -40,6 +42,25 @@ def test_a_result_that_cannot_be_kept_is_told_and_the_page_goes_on(tmp_path: Pat
 
     assert until(is_told)
     assert "see that you may write it" in page.told[0]
+    desk.close()
+
+
+def test_what_a_job_needs_is_not_deleted(tmp_path: Path) -> None:
+    """A live job's settings name the calibration, its command does not."""
+    queue, runs = JobQueue([sys.executable, "-c", ""]), tmp_path / "runs"
+    desk, rig = StartDesk(Given(runs), queue), kept_calibration(runs, "room")
+    rig.parent.mkdir()
+    rig.write_text("{}")
+    waits = queue.add(Plan("live", (), needs=(rig,), kind="page"))
+    page = Page(Delete("calibration", "room"))
+    desk.turn(page)  # type: ignore[arg-type]
+    assert page.told == ["a job uses room: end it first"]
+    queue.cancel(waits.number)
+    until(lambda: queue.turn() or waits.is_over)
+    page = Page(Delete("calibration", "room"))
+    desk.turn(page)  # type: ignore[arg-type]
+    assert page.told == ["room is deleted"]
+    assert not rig.exists()
     desk.close()
 
 

@@ -1,11 +1,13 @@
 """The files beside the runs: placed for a job, cleaned, deleted; and what may be served of them."""
 
+import json
 import os
 import shutil
 from pathlib import Path
 
 import pytest
 
+from runtime.store.other_run import RUN_OF
 from tritrack.starting.job_plan import Plan, PlanError
 from tritrack.starting.start_files import clean, delete_run, place, served
 
@@ -109,8 +111,25 @@ def test_what_belongs_to_no_run_is_cleaned(runs: Path) -> None:
 def test_a_run_is_deleted_with_its_own_videos_and_nothing_else(runs: Path) -> None:
     assert delete_run(runs, "walk")
     assert not (runs / "walk").exists()
+    assert (runs / ".clips/gone").exists()
+    clean(runs, lambda path: path.name == "gone")
     assert not (runs / ".clips/walk").exists()
     assert (runs / ".clips/gone").exists()
+
+
+def test_a_run_renamed_or_copied_by_hand_keeps_its_videos_until_the_last_is_deleted(
+    runs: Path,
+) -> None:
+    made_of = {"command": "single", "footage": [str(runs / ".clips/walk/walk.avi")]}
+    (runs / "walk/summary.json").write_text(json.dumps({RUN_OF: made_of}))
+    shutil.copytree(runs / "walk", runs / "copy")
+    (runs / "walk").rename(runs / "my best walk")
+    for name in ("my best walk", "copy"):
+        clean(runs, lambda _: False)
+        assert (runs / ".clips/walk/walk.avi").is_file()
+        assert delete_run(runs, name)
+    clean(runs, lambda _: False)
+    assert not (runs / ".clips/walk").exists()
 
 
 @pytest.mark.parametrize("name", ["", ".", "..", ".clips", "../runs", "walk/..", "other", "linked"])

@@ -18,7 +18,8 @@ from websockets.typing import Origin
 
 from animator.page.door import Entrance
 from animator.page.page_server import File
-from animator.start.sections import Got, Hello, Jobs, Told, encoded
+from animator.page.wish_page import Told, encoded
+from animator.start.sections import Got, Hello, Jobs
 from animator.start.start_page import StartPage
 from animator.start.wishes import (
     CHUNK_BYTES,

@@ -51,6 +51,7 @@ def test_a_live_run_is_of_the_chosen_cameras_in_their_order(there: There) -> Non
     assert settings.calibration == str((there.runs / ".calibrations/room.json").resolve())
     assert settings.page.port > 0
     assert plan.kind == "page"
+    assert plan.needs == (there.runs / ".calibrations/room.json",)
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,15 @@
 import gc
 import os
 
-from tritrack.stopping import STOPS, WORD, Terminated, code_of_stop, heed_at_once, heed_in_order
+from tritrack.stopping import (
+    STOPS,
+    WORD,
+    Terminated,
+    code_of_stop,
+    end_with_starter,
+    heed_at_once,
+    heed_in_order,
+)
 
 heed_at_once()
 
@@ -157,6 +165,7 @@ def main() -> None:
     Without a word on a terminal it is `start`.
     """
     heed_in_order()
+    end_with_starter()
     if len(sys.argv) == 1 and sys.stdin.isatty() and sys.stdout.isatty():
         sys.argv.append("start")
     warnings.filterwarnings("default", category=RenamedSetting)

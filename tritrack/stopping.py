@@ -3,6 +3,8 @@
 import os
 import signal
 import sys
+import threading
+import time
 from types import FrameType
 from typing import Final, NoReturn
 
@@ -11,6 +13,14 @@ BY_SIGNAL: Final = 128
 """Added to a signal's number in exit codes, by shells' convention."""
 STOPS: Final = (BY_SIGNAL + signal.SIGINT, BY_SIGNAL + signal.SIGTERM)
 """Exit codes of a command that was stopped."""
+
+
+STARTER: Final = "TRITRACK_STARTER"
+"""Environment variable; where it is STARTER_PIPE, standard input is a pipe that the program that
+started the command holds open as long as it lives, and the command ends with it."""
+STARTER_PIPE: Final = "stdin"
+ENDS_S: Final = 15.0
+"""Seconds that a command without a starter takes to end in order, before it ends at once."""
 
 
 class Terminated(SystemExit):
@@ -38,6 +48,24 @@ def heed_in_order() -> None:
     resources."""
     signal.signal(signal.SIGINT, signal.default_int_handler)
     signal.signal(signal.SIGTERM, _terminated)
+
+
+def end_with_starter() -> None:
+    """End in order, as by SIGTERM, once the program that started this command is gone.
+
+    A killed program sends no signal; its end of the pipe is closed whatever ended it, on every
+    system.
+    """
+    if os.environ.pop(STARTER, "") == STARTER_PIPE:
+        threading.Thread(target=_await_hang_up, name="starter's death", daemon=True).start()
+
+
+def _await_hang_up() -> None:
+    while os.read(0, 1):
+        pass
+    os.kill(os.getpid(), signal.SIGTERM)
+    time.sleep(ENDS_S)
+    os._exit(BY_SIGNAL + signal.SIGTERM)
 
 
 def code_of_stop(error: BaseException) -> int:

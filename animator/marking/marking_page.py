@@ -1,8 +1,6 @@
 """The marking page's server: pictures, the newest sheet for browsers, and their messages."""
 
-import queue
 import re
-import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -10,9 +8,10 @@ from typing import Final
 
 import msgspec
 
-from animator.marking.sheet import MOST_SAID_BYTES, Hello, Marked, Save, Shown, Told, heard
+from animator.marking.sheet import MOST_SAID_BYTES, Hello, Marked, Save, heard
 from animator.page.door import Entrance
-from animator.page.page_server import SITE, File, PageServer, site
+from animator.page.page_server import SITE, File, site
+from animator.page.wish_page import WishPage
 
 OWN_SITE: Final = Path(__file__).parent / "site"
 STILL: Final = re.compile(r"/still/([12])/(\d{1,6}|live)\.jpg", re.ASCII)
@@ -28,7 +27,7 @@ def still_address(camera: int, place: int) -> str:
     return f"/still/{camera}/{'live' if place == LIVE else place}.jpg"
 
 
-class MarkingPage:
+class MarkingPage(WishPage[Marked | Save]):
     """A page for browsers at `address`, until `close`.
 
     Args:
@@ -45,42 +44,8 @@ class MarkingPage:
         self, hello: Hello, jpeg_of: JpegOf, port: int, entrance: Entrance = Entrance()
     ) -> None:
         hello = msgspec.structs.replace(hello, run=time.time_ns() // 1_000_000)
-        self._hello, self._jpeg_of = msgspec.json.encode(hello), jpeg_of
-        self._lock = threading.Lock()
-        self._shown: bytes | None = None
-        self._server = PageServer(port, self._greeting, entrance, self._file, MOST_SAID_BYTES)
-        self.address = self._server.address
-        """Address of the page."""
-
-    def show(self, shown: Shown) -> None:
-        """Send every browser, now and later, the newest sheet."""
-        said = msgspec.json.encode(shown)
-        with self._lock:
-            self._shown = said
-        self._server.tell(said)
-
-    def tell(self, text: str, well: bool) -> None:
-        """Report the outcome of a request."""
-        self._server.tell(msgspec.json.encode(Told(text, well)))
-
-    def next_wish(self) -> Marked | Save | None:
-        """The browsers' messages, oldest first; None when there is none.
-
-        Raises:
-            SheetError: When it is no message of our page.
-        """
-        try:
-            return heard(self._server.asked.get_nowait())
-        except queue.Empty:
-            return None
-
-    def close(self) -> None:
-        """Take the page down and free the port."""
-        self._server.close()
-
-    def _greeting(self) -> list[bytes]:
-        with self._lock:
-            return [self._hello] if self._shown is None else [self._hello, self._shown]
+        self._jpeg_of = jpeg_of
+        super().__init__(hello, heard, port, entrance, self._file, MOST_SAID_BYTES)
 
     def _file(self, path: str) -> File | None:
         asked = STILL.fullmatch(path)

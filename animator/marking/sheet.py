@@ -146,13 +146,6 @@ class Shown(msgspec.Struct, frozen=True, tag="shown", tag_field="kind"):
     well: bool
 
 
-class Told(msgspec.Struct, frozen=True, tag="told", tag_field="kind"):
-    """The outcome of a request."""
-
-    text: str
-    well: bool
-
-
 def refuse_sheet(sheet: Sheet, hello: Hello) -> None:
     """Refuse a sheet that no click on this page gives.
 

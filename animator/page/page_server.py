@@ -5,6 +5,7 @@ import logging
 import mimetypes
 import queue
 import threading
+import time
 from collections.abc import Callable
 from concurrent.futures import Future
 from contextlib import suppress
@@ -39,6 +40,10 @@ MOST_SAID_BYTES: Final = 1000
 """Upper bound of a browser's message, bytes, unless a page accepts more."""
 MOST_ASKED: Final = 16
 """Largest number of requests that wait to be answered."""
+PATIENCE_S: Final = 2.0
+"""Seconds without room among those after which requests are refused."""
+ROOM_S: Final = 0.02
+"""Interval at which it looks for room, seconds."""
 OPENS_S: Final = 20.0
 """Seconds within which a server must listen, or it never will, as where a name cannot be
 resolved."""
@@ -97,6 +102,7 @@ class PageServer:
         file_of: The page's file for a path, None where there is none; called in the server's
             thread.
         most_said_bytes: A browser that sends more at once is disconnected.
+        busy: The answer to a browser whose request found no room.
 
     Raises:
         PageError: When the port is 0, taken or not allowed, the host's name is invalid, or the
@@ -110,6 +116,7 @@ class PageServer:
         entrance: Entrance = Entrance(),
         file_of: Callable[[str], File | None] = live_file,
         most_said_bytes: int = MOST_SAID_BYTES,
+        busy: bytes = b"",
     ) -> None:
         refuse_port(port, entrance.host)
         self.address = address_of(entrance, port)
@@ -119,7 +126,9 @@ class PageServer:
         """Number of browsers so far."""
         self._greeting = greeting
         self._entrance, self._port = entrance, port
-        self._file_of, self._most_said_bytes = file_of, most_said_bytes
+        self._file_of, self._most_said_bytes, self._busy = file_of, most_said_bytes, busy
+        self._full_s = 0.0
+        """Since when there has been no room for a request; 0: there is."""
         self._browsers: dict[ServerConnection, asyncio.Queue[bytes]] = {}
         opened: Future[_Door] = Future()
         self._log = logging.getLogger(f"{__name__}.socket")
@@ -206,19 +215,40 @@ class PageServer:
         speaking = asyncio.create_task(_speak(connection, greeting, waiting))
         try:
             async for said in connection:
-                with suppress(queue.Full):
-                    self.asked.put_nowait(said if isinstance(said, bytes) else said.encode())
+                asked = said if isinstance(said, bytes) else said.encode()
+                if not await self._has_taken(asked) and self._busy:
+                    _give(waiting, self._busy)
         except ConnectionClosed:
             pass
         finally:
             del self._browsers[connection]
             speaking.cancel()
 
+    async def _has_taken(self, asked: bytes) -> bool:
+        """Keep a request for the program; its browser's next one waits meanwhile."""
+        while True:
+            try:
+                self.asked.put_nowait(asked)
+            except queue.Full:
+                now_s = time.monotonic()
+                self._full_s = self._full_s or now_s
+                if now_s - self._full_s > PATIENCE_S:
+                    return False
+                await asyncio.sleep(ROOM_S)
+            else:
+                self._full_s = 0.0
+                return True
+
     def _spread(self, message: bytes) -> None:
         for waiting in self._browsers.values():
-            if waiting.full():
-                waiting.get_nowait()
-            waiting.put_nowait(message)
+            _give(waiting, message)
+
+
+def _give(waiting: "asyncio.Queue[bytes]", message: bytes) -> None:
+    """Let a message wait for a browser; a full queue loses the oldest."""
+    if waiting.full():
+        waiting.get_nowait()
+    waiting.put_nowait(message)
 
 
 async def _speak(

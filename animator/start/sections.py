@@ -1,7 +1,6 @@
-"""What the start page says to browsers: its sections as JSON, and answers to wishes."""
+"""What the start page says to browsers: its sections."""
 
-import json
-from typing import Any, Literal
+from typing import Literal
 
 import msgspec
 
@@ -156,18 +155,3 @@ class Calibrations(Section, frozen=True):
     calibrations: list[ShownCalibration]
     board: str
     """Address of the board to print; "": not made yet."""
-
-
-class Told(msgspec.Struct, frozen=True, tag_field="kind", tag="told"):
-    """The outcome of a wish."""
-
-    text: str
-    well: bool
-
-
-def encoded(message: Any) -> bytes:
-    """A message for browsers; a file's name that is no Unicode is sent with its bytes escaped."""
-    try:
-        return msgspec.json.encode(message)
-    except UnicodeEncodeError:
-        return json.dumps(msgspec.to_builtins(message)).encode()

@@ -1,14 +1,13 @@
-"""The start page's server: the newest of each section for browsers, and their wishes."""
+"""The start page's server: its sections for browsers, their wishes, and the files of runs."""
 
-import queue
-import threading
 from collections.abc import Callable
 from pathlib import Path
 from typing import Final
 
 from animator.page.door import Entrance
-from animator.page.page_server import SITE, File, PageServer, site
-from animator.start.sections import Got, Hello, Section, Told, encoded
+from animator.page.page_server import SITE, File, site
+from animator.page.wish_page import WishPage
+from animator.start.sections import Hello
 from animator.start.wishes import MOST_SAID_BYTES, AnyWish, Chunk, heard
 
 OWN_SITE: Final = Path(__file__).parent / "site"
@@ -18,7 +17,7 @@ FileOf = Callable[[str], File | None]
 thread."""
 
 
-class StartPage:
+class StartPage(WishPage[AnyWish | Chunk]):
     """A page for browsers at `address`, until `close`.
 
     Args:
@@ -32,48 +31,7 @@ class StartPage:
     """
 
     def __init__(self, hello: Hello, file_of: FileOf, port: int, entrance: Entrance) -> None:
-        self._file_of, self._lock = file_of, threading.Lock()
-        self._newest: dict[type[Section], bytes] = {Hello: encoded(hello)}
-        self._server = PageServer(port, self._greeting, entrance, self._file, MOST_SAID_BYTES)
-        self.address = self._server.address
-        """Address of the page, without its token."""
+        def file(path: str) -> File | None:
+            return site(SITE, OWN_SITE).get(path) or file_of(path)
 
-    @property
-    def watched(self) -> bool:
-        """Whether any browser is connected."""
-        return self._server.watched
-
-    def show(self, section: Section) -> None:
-        """Send every browser, now and later, a section, where it has changed."""
-        said = encoded(section)
-        with self._lock:
-            if self._newest.get(type(section)) == said:
-                return
-            self._newest[type(section)] = said
-        self._server.tell(said)
-
-    def tell(self, message: Told | Got) -> None:
-        """Send the browsers of now a message."""
-        self._server.tell(encoded(message))
-
-    def next_wish(self) -> AnyWish | Chunk | None:
-        """The browsers' messages, oldest first; None when there is none.
-
-        Raises:
-            WishError: When it is no message of our page.
-        """
-        try:
-            return heard(self._server.asked.get_nowait())
-        except queue.Empty:
-            return None
-
-    def close(self) -> None:
-        """Take the page down and free the port."""
-        self._server.close()
-
-    def _greeting(self) -> list[bytes]:
-        with self._lock:
-            return [*self._newest.values()]
-
-    def _file(self, path: str) -> File | None:
-        return site(SITE, OWN_SITE).get(path) or self._file_of(path)
+        super().__init__(hello, heard, port, entrance, file, MOST_SAID_BYTES)

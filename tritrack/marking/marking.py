@@ -10,6 +10,7 @@ from rich.console import Console
 from animator.marking.marking_page import MarkingPage
 from animator.marking.sheet import Hello, Marked, Save, Sheet, SheetError, Shown, refuse_sheet
 from animator.page.door import entrance_of, invitation_of
+from animator.page.wish_page import Told
 from calibration.paper.calibration import read_points, write_text
 from calibration.paper.markers import Markers
 from calibration.paper.poles import Poles
@@ -179,14 +180,14 @@ def _hear(
     try:
         while (wish := page.next_wish()) is not None:
             if isinstance(wish, Save):
-                page.tell(_written(method, shown.sheet, hello.writes), True)
+                page.tell(Told(_written(method, shown.sheet, hello.writes), well=True))
                 saved = shown.sheet
             else:
                 refuse_sheet(wish.sheet, hello)
                 shown = answered(method, wish, kept)
                 page.show(shown)
     except (SheetError, CalibrationError) as error:
-        page.tell(str(error), False)
+        page.tell(Told(str(error), well=False))
     return shown, saved
 
 

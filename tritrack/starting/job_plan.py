@@ -50,6 +50,8 @@ class Plan(NamedTuple):
     """A page stays open until it is ended, a work ends by itself."""
     frames: int = 0
     """Of the video; 0: not known."""
+    needs: tuple[Path, ...] = ()
+    """Files that it reads beside those that its command names."""
 
     @property
     def command(self) -> str:
@@ -233,11 +235,11 @@ def run_plan(wish: Open | Export | Report | Compare, runs: Path, port: int) -> P
     )
 
 
-def live_plan(settings: Path, known: Known, name: str) -> Plan:
-    """The plan of a live run by a settings file."""
+def live_plan(settings: Path, known: Known, name: str, needs: tuple[Path, ...] = ()) -> Plan:
+    """The plan of a live run by a settings file, and by what that names."""
     record = ("--record",) if known.records else ()
     arguments = ("live", str(settings), "--out", str(known.runs / name), *record)
-    return Plan(f"{name}: live", arguments, run=name, kind="page")
+    return Plan(f"{name}: live", arguments, run=name, kind="page", needs=needs)
 
 
 def demo_plan(runs: Path) -> Plan:

@@ -14,6 +14,7 @@ from animator.start.sections import Jobs, ShownJob, State
 from runtime.terminal import PROGRESS
 from tritrack.starting.job_plan import Kind, Plan, PlanError
 from tritrack.starting.job_progress import Progress, step, words
+from tritrack.stopping import STARTER, STARTER_PIPE
 
 MOST_WAITING: Final = 4
 MOST_KEPT: Final = 12
@@ -116,9 +117,10 @@ class JobQueue:
         return frozenset(job.plan.run for job in self._jobs if job.plan.run and not job.is_over)
 
     def uses(self, path: Path) -> bool:
-        """Whether a job that is not over names a path or something in it, or writes a run there."""
+        """Whether a job that is not over needs a path or something in it, or writes a run there."""
         going = [job.plan for job in self._jobs if not job.is_over]
         words = [Path(word) for plan in going for word in plan.arguments]
+        words += [path for plan in going for path in plan.needs]
         written = any(plan.run and plan.run == path.name for plan in going)
         return written or any(word == path or path in word.parents for word in words)
 
@@ -154,9 +156,10 @@ class JobQueue:
 
     def _begin(self, job: Job) -> None:
         environment = {**os.environ, PROGRESS: "lines", "COLUMNS": COLUMNS, "PYTHONUNBUFFERED": "1"}
+        environment[STARTER] = STARTER_PIPE
         job.process = subprocess.Popen(
             [*self._program, *job.plan.arguments],
-            stdin=subprocess.DEVNULL,
+            stdin=subprocess.PIPE,  # open as long as we live, which ends it otherwise
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,

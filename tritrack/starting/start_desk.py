@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import Final, NamedTuple
 
 from animator.page.page_server import File
-from animator.start.sections import Got, Hello, Told
+from animator.page.wish_page import Told
+from animator.start.sections import Got, Hello
 from animator.start.start_page import StartPage
 from animator.start.wishes import (
     AnyWish,
@@ -28,7 +29,7 @@ from common.video.decoding import Decoder
 from runtime.store.run_exports import OWN_NAMES
 from tritrack.starting.aside import Aside
 from tritrack.starting.calibration_list import remove_calibration
-from tritrack.starting.job_plan import PlanError
+from tritrack.starting.job_plan import PlanError, kept_calibration
 from tritrack.starting.job_queue import Job, JobQueue
 from tritrack.starting.start_files import clean, delete_run, place, served
 from tritrack.starting.start_lists import StartLists
@@ -189,10 +190,12 @@ class StartDesk:
         return job
 
     def _delete(self, wish: Delete, page: StartPage) -> None:
-        if self._queue.uses(self._runs / wish.name):
+        is_run = wish.what == "run"
+        path = self._runs / wish.name if is_run else kept_calibration(self._runs, wish.name)
+        if self._queue.uses(path):
             raise PlanError(f"a job uses {wish.name}: end it first")
-        remove = delete_run if wish.what == "run" else remove_calibration
-        gone = remove(self._runs, wish.name)
+        gone = (delete_run if is_run else remove_calibration)(self._runs, wish.name)
+        clean(self._runs, self._queue.uses)
         text = f"{wish.name} is deleted" if gone else f"there is no {wish.what} {wish.name!r}"
         page.tell(Told(text, gone))
         self._lists.hurry()

@@ -11,7 +11,7 @@ from animator.page.page_server import POLICY, REPORT_POLICY, File
 from common.atomic_file import unwritten
 from tritrack.starting.calibration_list import calibration_file
 from tritrack.starting.job_plan import CLIPS, Plan, PlanError
-from tritrack.starting.run_list import run_file, run_folder
+from tritrack.starting.run_list import found_runs, made_by, run_file, run_folder
 
 SETTINGS: Final = ".settings"
 """Folder of the settings of live runs that the page began."""
@@ -48,19 +48,31 @@ def place(plan: Plan) -> None:
 def clean(runs: Path, is_used: Callable[[Path], bool]) -> None:
     """Remove videos and settings that belong to no run any more.
 
+    A run keeps the videos that its summary names, whatever its folder is called by now.
+
     Args:
         runs: The folder of the runs.
         is_used: Whether a job needs a path.
     """
+    named = {
+        clip_folder(runs, video) for run in found_runs(runs) for video in made_by(run.summary)[1]
+    }
     for place_of in (CLIPS, SETTINGS):
         for path in (runs / place_of).glob("*"):
-            if (runs / path.stem).is_dir() or (runs / path.name).is_dir() or is_used(path):
-                continue
-            remove(path)
+            is_of_run = (runs / path.stem).is_dir() or (runs / path.name).is_dir()
+            if not (is_of_run or path.name in named or is_used(path)):
+                remove(path)
+
+
+def clip_folder(runs: Path, video: str) -> str:
+    """The name of the folder of a run's own video; "": it is not among those."""
+    within = Path(video)
+    clips = runs / CLIPS
+    return within.relative_to(clips).parts[0] if clips in within.parents else ""
 
 
 def delete_run(runs: Path, name: str) -> bool:
-    """Delete a run with its own videos; False where there is no such run.
+    """Delete a run; False where there is no such run. `clean` then removes its videos.
 
     Raises:
         PlanError: When something of it is left.
@@ -68,10 +80,9 @@ def delete_run(runs: Path, name: str) -> bool:
     folder = run_folder(runs, name)
     if folder is None:
         return False
-    for path in (folder, runs / CLIPS / name, runs / SETTINGS / f"{name}.toml"):
-        remove(path)
-        if path.exists():
-            raise PlanError(f"a part of {path} is left: see that you may write it, and delete it")
+    remove(folder)
+    if folder.exists():
+        raise PlanError(f"a part of {folder} is left: see that you may write it, and delete it")
     return True
 
 

@@ -111,4 +111,4 @@ def _plan_of_cameras(wish: Live, there: There) -> Plan:
         file.write_text(live_settings(sources, port, rig, wish.pictures), "utf-8")
     except UnicodeEncodeError as error:
         raise PlanError("a file's name is no Unicode, which settings must be: rename it") from error
-    return live_plan(file, known, name)
+    return live_plan(file, known, name, () if rig is None else (rig,))

@@ -15,7 +15,12 @@ const link = {
   send(said) { if (link.socket?.readyState === WebSocket.OPEN) link.socket.send(said); },
   say(wish) { link.send(JSON.stringify(wish)); },
 };
-const uploader = new Uploader(link);
+function tell({ text, well }) {
+  at("told").textContent = text;
+  at("told").className = well ? "" : "bad";
+}
+
+const uploader = new Uploader(link, (text) => tell({ text, well: false }));
 const tray = new Tray(link, uploader);
 const cameras = new Cameras(link);
 let hello;
@@ -31,10 +36,7 @@ const heard = {
   runs: (said) => showRuns(said, hello, link),
   cameras: (said) => cameras.show(said),
   calibrations: (said) => showCalibrations(said, link),
-  told({ text, well }) {
-    at("told").textContent = text;
-    at("told").className = well ? "" : "bad";
-  },
+  told: tell,
 };
 
 function status(state, words) {

@@ -21,7 +21,7 @@ export class Tray {
     addEventListener("drop", (event) => {
       event.preventDefault();
       drop.classList.remove("over");
-      uploader.add(event.dataTransfer.files);
+      uploader.addDropped(event.dataTransfer);
     });
     at("choose-files").addEventListener("change", ({ target }) => {
       uploader.add([...target.files]);
