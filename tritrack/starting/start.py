@@ -1,12 +1,10 @@
 """The start page, until Ctrl-C: from videos or cameras to a result without another command."""
 
-import html
 import os
 import secrets
 import sys
 import webbrowser
 from contextlib import suppress
-from pathlib import Path
 from typing import Final
 
 from rich.console import Console
@@ -15,18 +13,11 @@ from animator.page.door import Entrance, invitation_of, refuse_port
 from animator.start.start_page import StartPage
 from common.bus.process import ProcessContext, process
 from tritrack.starting.start_desk import Given, StartDesk
+from tritrack.starting.start_letter import letter_of
 from tritrack.starting.uploads import FOLDER
 
 LOOK_S: Final = 0.01
 """Interval at which browsers' messages are read, seconds."""
-LETTER: Final = "open.html"
-LETTER_TEXT: Final = """<!doctype html>
-<meta charset="utf-8">
-<meta name="referrer" content="no-referrer">
-<meta http-equiv="refresh" content="0; url={address}">
-<title>tritrack</title>
-<p><a href="{address}">The start page</a></p>
-"""
 SCREENS: Final = ("DISPLAY", "WAYLAND_DISPLAY")
 """Environment variables of a session with a screen."""
 
@@ -64,24 +55,6 @@ def start(given: Given, port: int, browser: bool, console: Console) -> None:
                 page.close()
         finally:
             desk.close()
-
-
-def letter_of(folder: Path, address: str) -> Path:
-    """A file for this user's eyes alone that leads a browser to an address.
-
-    Every user of the machine reads the arguments of a browser, where the address with its token
-    would stand.
-
-    Args:
-        folder: Where it lies until the page ends: a browser in a sandbox may read no folder but the
-            user's own.
-        address: Of the page, with its token.
-    """
-    path = folder / LETTER
-    text = LETTER_TEXT.format(address=html.escape(address))
-    with os.fdopen(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w") as file:
-        file.write(text)
-    return path
 
 
 def has_screen() -> bool:
