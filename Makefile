@@ -2,7 +2,7 @@
 PYTHON ?= $(firstword $(foreach v,3.11 3.12 3.13,$(shell python$(v) -c "import sys; print(sys.executable)" 2>/dev/null)) python3.11)
 VENV := .venv
 BIN := $(VENV)/bin
-EXTRAS := page,export,usd,mcap,metrics,osc,lsl,keys,learn,report,single,cluster,docs,dev
+EXTRAS := page,export,usd,mcap,metrics,osc,lsl,keys,learn,report,single,video,cluster,docs,dev
 # What `.ci/run` has besides: 2.5 GB of what trains networks, and of programs that open exports.
 LARGE := train,clients
 

@@ -1,54 +1,47 @@
-"""Available video codecs: `python -m animator.video_codec W H` tries them and prints the best."""
+"""The video codec of this machine, and what was written with it."""
 
-import subprocess
-import sys
-import tempfile
+from collections.abc import Callable
 from functools import cache
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Final, NamedTuple
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
-TRIAL_S: Final = 20.0
-"""Seconds after which a hardware encoder that was given a few pictures is stuck."""
-TRIAL_PICTURES: Final = 3
+Picture = NDArray[np.uint8]
+"""(H, W, 3), blue, green, red; H and W are even."""
+Put = Callable[[Picture], None]
+"""Takes the next picture of a video."""
 
 
 class Codec(NamedTuple):
     """A video codec and its container file."""
 
     name: str
-    code: str
     suffix: str
-    by: int
-    """OpenCV's number of the library that writes it."""
+    code: str = ""
+    """OpenCV's four letters of it; "" where PyAV writes it."""
+    by: int = cv2.CAP_FFMPEG
+    """OpenCV's number of the library that reads it, and writes it where PyAV does not."""
 
 
-CODECS: Final = (
-    Codec("H.264", "avc1", ".mp4", cv2.CAP_FFMPEG),
-    Codec("MPEG-4", "mp4v", ".mp4", cv2.CAP_FFMPEG),
-    Codec("Motion JPEG", "MJPG", ".avi", cv2.CAP_OPENCV_MJPEG),
-)
-"""The codecs, best first: the first plays in browsers; the second's files are a tenth of the
-third's, which needs no optional library. OpenCV from PyPI lacks the first."""
+H264: Final = Codec("H.264", ".mp4")
+MPEG4: Final = Codec("MPEG-4", ".mp4", "mp4v")
+MOTION_JPEG: Final = Codec("Motion JPEG", ".avi", "MJPG", cv2.CAP_OPENCV_MJPEG)
+CODECS: Final = (H264, MPEG4, MOTION_JPEG)
+"""The codecs, best first: browsers play the first alone, and its files are a quarter of the
+second's, a twenty-fifth of the third's. OpenCV from PyPI writes the second, every OpenCV the third.
+"""
 
 
 @cache
-def best_codec(size: tuple[int, int]) -> Codec:
-    """The best codec of this machine for pictures of a size (width, height).
-
-    Each is tried in a process of its own: encoders print what they lack, and hardware encoders may
-    hang.
-    """
-    asked = [sys.executable, "-P", "-m", __name__, *map(str, size)]
-    try:
-        told = subprocess.run(asked, capture_output=True, timeout=TRIAL_S, check=False)
-    except subprocess.TimeoutExpired:
-        return CODECS[-1]
-    names = [codec.name for codec in CODECS]
-    name = told.stdout.decode(errors="replace").strip()
-    return CODECS[names.index(name)] if name in names else CODECS[-1]
+def best_codec() -> Codec:
+    """The best codec that what is installed here can write."""
+    if find_spec("av"):
+        return H264
+    return MPEG4 if cv2.CAP_FFMPEG in cv2.videoio_registry.getWriterBackends() else MOTION_JPEG
 
 
 def pictures_in(path: Path, codec: Codec) -> int:
@@ -57,25 +50,3 @@ def pictures_in(path: Path, codec: Codec) -> int:
     kept = int(written.get(cv2.CAP_PROP_FRAME_COUNT)) if written.isOpened() else 0
     written.release()
     return kept
-
-
-def works(codec: Codec, size: tuple[int, int]) -> bool:
-    """Whether a video of a few pictures can be written and read back."""
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / f"trial{codec.suffix}"
-        code = cv2.VideoWriter.fourcc(*codec.code)
-        writer = cv2.VideoWriter(str(path), codec.by, code, 15.0, size)
-        for shade in range(TRIAL_PICTURES if writer.isOpened() else 0):
-            writer.write(np.full((size[1], size[0], 3), 60 * shade, np.uint8))
-        writer.release()
-        return pictures_in(path, codec) == TRIAL_PICTURES
-
-
-def main() -> None:
-    """Print the name of the best codec for pictures of the given size."""
-    size = int(sys.argv[1]), int(sys.argv[2])
-    print(next(codec.name for codec in CODECS if works(codec, size)))
-
-
-if __name__ == "__main__":
-    main()

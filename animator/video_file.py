@@ -1,20 +1,17 @@
 """A video file: pictures written one after the other, completely or not at all."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from itertools import chain
 from pathlib import Path
 from typing import Final, NamedTuple
 
 import cv2
-import numpy as np
-from numpy.typing import NDArray
 
-from animator.video_codec import CODECS, Codec, best_codec, pictures_in
+from animator.h264_file import h264_writer
+from animator.video_codec import CODECS, H264, Codec, Picture, Put, best_codec, pictures_in
 from common.atomic_file import replacing
-
-Picture = NDArray[np.uint8]
-"""(H, W, 3), blue, green, red; H and W are even."""
 
 FINEST_HZ: Final = 65_535
 """Largest time scale of MPEG-4, ticks per second; OpenCV derives the scale from the rate's
@@ -50,7 +47,7 @@ def write_video(path: Path, pictures: Iterable[Picture], fps: float) -> WrittenV
         first = next(coming, None)
         if first is None:
             raise VideoError("it got no picture")
-        codec = best_codec((first.shape[1], first.shape[0]))
+        codec = best_codec()
         with replacing(_named(path, codec)) as new:
             _write(new, chain([first], coming), codec, fps)
         for other in CODECS:
@@ -64,23 +61,36 @@ def write_video(path: Path, pictures: Iterable[Picture], fps: float) -> WrittenV
         ) from error
 
 
-def _write(path: Path, pictures: Iterable[Picture], codec: Codec, fps: float) -> None:
-    size, due, writer = (0, 0), 0, None
-    for picture in pictures:
-        own = (picture.shape[1], picture.shape[0])
-        if writer is None:
-            code, size = cv2.VideoWriter.fourcc(*codec.code), own
-            writer = cv2.VideoWriter(str(path), codec.by, code, writable_hz(fps), size)
-        if own != size:
-            raise VideoError(f"a picture of {own} does not follow those of {size}")
-        writer.write(picture)
-        due += 1
-    if writer is not None:
-        writer.release()
+def _write(path: Path, pictures: Iterator[Picture], codec: Codec, fps: float) -> None:
+    first = next(pictures)
+    size, due = (first.shape[1], first.shape[0]), 0
+    writer = h264_writer(path, size, fps) if codec == H264 else _writer(path, codec, size, fps)
+    with writer as put:
+        for picture in chain([first], pictures):
+            own = (picture.shape[1], picture.shape[0])
+            if own != size:
+                raise VideoError(f"a picture of {own} does not follow those of {size}")
+            put(picture)
+            due += 1
     # OpenCV does not report a full disk
     kept = pictures_in(path, codec)
     if kept != due:
         raise VideoError(f"only {kept} of {due} pictures could be written")
+
+
+@contextmanager
+def _writer(path: Path, codec: Codec, size: tuple[int, int], fps: float) -> Iterator[Put]:
+    """OpenCV's writer of a codec."""
+    code = cv2.VideoWriter.fourcc(*codec.code)
+    writer = cv2.VideoWriter(str(path), codec.by, code, writable_hz(fps), size)
+
+    def put(picture: Picture) -> None:
+        writer.write(picture)
+
+    try:
+        yield put
+    finally:
+        writer.release()
 
 
 def writable_hz(fps: float) -> float:

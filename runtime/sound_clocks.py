@@ -8,7 +8,7 @@ import msgspec
 from common.bus.messages import ViewerNumber
 from common.config.part_settings import CameraSettings
 from common.config.settings import Settings
-from common.sound.sound_of_video import RATE_HZ, has_program, sound_of
+from common.sound.sound_of_video import RATE_HZ, can_hear, sound_of
 from common.sound.sound_offset import delay_of
 from common.video.clip_facts import Clip, set_back
 from common.video.clip_sources import Offsets, offsets_of
@@ -53,7 +53,7 @@ def heard_words(name: str, late_s: Offsets) -> list[str]:
 def _heard(clip: Clip, given: Offsets) -> dict[ViewerNumber, float]:
     first, *others = clip.views
     asked = [view for view in others if view.number not in given]
-    if not asked or not has_program() or not all(is_recorded(v.source) for v in clip.views):
+    if not asked or not can_hear() or not all(is_recorded(v.source) for v in clip.views):
         return {}
     sound = sound_of(Path(str(first.source)))
     if sound is None:

@@ -325,13 +325,17 @@ def test_confidence_is_the_mean_over_frames_that_have_a_pose() -> None:
 
 def test_the_line_says_what_share_has_a_pose_even_of_no_frames() -> None:
     facts = {"frames": 0, "frames_with_pose": 0, "confidence": 0.0}
-    facts |= {"overlay": "o.mp4", "overlay_codec": "mp4v"}  # type: ignore[dict-item]
+    facts |= {"overlay": "o.mp4", "overlay_codec": "H.264"}  # type: ignore[dict-item]
     assert line_of("a", facts) == (
-        "a: a pose in 0 of 0 frames (0%), mean confidence 0.00; open o.mp4 (mp4v)"
+        "a: a pose in 0 of 0 frames (0%), mean confidence 0.00; open o.mp4 (H.264)"
     )
     more = facts | {"frames": 8, "frames_with_pose": 6, "believed": 0.25, "confidence": 0.876}
     assert line_of("a", more) == (
-        "a: a pose in 6 of 8 frames (75%), believed in 25%, mean confidence 0.88; open o.mp4 (mp4v)"
+        "a: a pose in 6 of 8 frames (75%), believed in 25%, mean confidence 0.88; "
+        "open o.mp4 (H.264)"
+    )
+    assert line_of("a", facts | {"overlay_codec": "MPEG-4"}).endswith(
+        "open o.mp4 (MPEG-4: pip install 'tritrack[video]' for browsers)"
     )
 
 

@@ -8,14 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from animator.video_codec import CODECS, Codec, works
+from animator.video_codec import CODECS, H264, MPEG4, Codec
 from animator.video_file import VideoError, WrittenVideo, write_video
 from common.video.decoding import Decoder
 
 SIZE = (122, 90)
 PICTURES = [np.full((90, 122, 3), 20 * i, np.uint8) for i in range(6)]
-CAPABLE = [codec for codec in CODECS if works(codec, SIZE)]
-"""Of this machine, the best first."""
 
 
 def read(film: WrittenVideo) -> list[np.ndarray]:
@@ -24,19 +22,23 @@ def read(film: WrittenVideo) -> list[np.ndarray]:
         return [decoded.picture for decoded in decoder.frames(str(film.path), SIZE)]
 
 
-@pytest.mark.parametrize("codec", CAPABLE, ids=[codec.name for codec in CAPABLE])
+@pytest.mark.parametrize("codec", CODECS, ids=[codec.name for codec in CODECS])
 def test_every_picture_can_be_read_again(
     tmp_path: Path, codec: Codec, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("animator.video_file.best_codec", lambda size: codec)
+    monkeypatch.setattr("animator.video_file.best_codec", lambda: codec)
     film = write_video(tmp_path / "made" / "an overlay", PICTURES, 15.0)
     assert film.path == tmp_path / "made" / f"an overlay{codec.suffix}"
     assert [round(float(picture.mean()) / 20) for picture in read(film)] == [0, 1, 2, 3, 4, 5]
 
 
 @pytest.mark.parametrize("gap_s", [0.008, 0.011, 0.013, 0.014, 1001 / 60_000, 0.04, 1.5, 0.0003])
-def test_a_film_of_any_rate_can_be_written(tmp_path: Path, gap_s: float) -> None:
+@pytest.mark.parametrize("codec", [H264, MPEG4])
+def test_a_film_of_any_rate_can_be_written(
+    tmp_path: Path, gap_s: float, codec: Codec, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """MPEG-4 refuses 71.429 frames a second, which Matroska's 14 ms from frame to frame are."""
+    monkeypatch.setattr("animator.video_file.best_codec", lambda: codec)
     film = write_video(tmp_path / "overlay", PICTURES, 1 / gap_s)
     with Decoder() as decoder:
         assert decoder.probe(str(film.path)).fps == pytest.approx(1 / gap_s, rel=1e-3)

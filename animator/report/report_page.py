@@ -61,6 +61,8 @@ class ReportInput(NamedTuple):
     warnings: list[str]
     video: str
     """File name of the overlay; "" where there is none."""
+    plays: bool
+    """Whether browsers play it."""
     command: str
 
 

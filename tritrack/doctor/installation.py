@@ -31,6 +31,7 @@ EXTRAS: Final = (
     ("live page", "viser", "page"),
     ("notes of the retouching page", "tomlkit", "page"),
     ("rooms of busy clips", "scikit-image", "single"),
+    ("videos for browsers, sounds", "av", "video"),
     ("learning of postures", "scikit-learn", "learn"),
     ("plots of reports and of angles", "matplotlib", "report"),
     ("C3D files", "ezc3d", "export"),

@@ -8,6 +8,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from rich.console import Console
 
+from animator.h264_file import is_h264
 from animator.report.belief_stretches import worst_rows
 from animator.report.report_page import ReportInput, person_part, report_html
 from common.atomic_file import replacing
@@ -113,6 +114,7 @@ def _input_of(run: PastRun, video: str) -> ReportInput:
         trust=[*trust_lines(summary), *clock_line(summary)],
         warnings=[str(one) for one in summary.get("warnings", ())],
         video=video,
+        plays=bool(video) and is_h264(run.folder / video),
         command=f"tritrack {of.get('command', 'track')}",
     )
 

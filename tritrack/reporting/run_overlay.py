@@ -8,8 +8,8 @@ import cv2
 import numpy as np
 
 from animator.report.report_page import Shot
-from animator.video_codec import CODECS
-from animator.video_file import Picture, write_video
+from animator.video_codec import CODECS, Picture
+from animator.video_file import write_video
 from common.video.decoding import Decoder
 from runtime.store.past_run import PastRun
 from runtime.terminal import Tell

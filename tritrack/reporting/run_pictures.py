@@ -10,7 +10,7 @@ import msgspec
 import numpy as np
 
 from animator.overlay import INK, PAPER, draw_stick
-from animator.video_file import Picture
+from animator.video_codec import Picture
 from common.bus.messages import ViewerNumber
 from common.config.explained import explained
 from common.config.part_settings import SettingsError

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from animator.overlay import SHOWN, overlay
-from animator.video_file import Picture, WrittenVideo, write_video
+from animator.video_codec import Picture
+from animator.video_file import WrittenVideo, write_video
 from common.body.body import Vector
 from common.bus.messages import Body, View
 from common.config.picture_size import working_size

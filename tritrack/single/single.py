@@ -9,6 +9,7 @@ import numpy as np
 from rich.console import Console
 
 from animator.take import take_of
+from animator.video_codec import H264
 from common.config.config_file import load
 from common.config.part_settings import CameraSettings, SettingsError
 from common.config.settings import Settings
@@ -258,5 +259,10 @@ def line_of(name: str, facts: Facts) -> str:
         f"{name}: a pose in {facts['frames_with_pose']} of {facts['frames']} frames ({share:.0%})"
         + (f", believed in {believed:.0%}" if believed is not None else "")
         + f", mean confidence {facts['confidence']:.2f}; open {facts['overlay']} "
-        f"({facts['overlay_codec']})"
+        f"({_codec_words(facts['overlay_codec'])})"
     )
+
+
+def _codec_words(name: str) -> str:
+    """An overlay's codec, and how to get one that browsers play."""
+    return name if name == H264.name else f"{name}: pip install 'tritrack[video]' for browsers"
