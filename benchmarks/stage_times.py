@@ -27,7 +27,7 @@ from common.video.clips import open_clip
 from integrator import merge
 from recognizer import __main__ as recognizer_process
 from runtime.live.table import table_of_rows
-from viewer import landmark_step, track
+from viewer import track
 from viewer.captured_frame import CapturedFrame
 
 STAGES: Final = (
@@ -79,8 +79,7 @@ def timed(clip: Path, size: str) -> Iterator[list[float]]:
         steps.recogniser, _ = recognizer_process.step(steps.recogniser, heard)
         at.append(time.thread_time())
         for number, viewer in steps.viewers.items():
-            searched = landmark_step.searched(viewer.landmarks)
-            steps.viewers[number] = viewer._replace(landmarks=searched)
+            steps.viewers[number] = track.finished(viewer)
         at.append(time.thread_time())
         yield np.diff(at).tolist()
 

@@ -268,7 +268,9 @@ def test_a_camera_that_was_moved_looks_before_its_background_as_it_is_turned(
     still = state.moved
     assert still is not None
     state = state._replace(
-        landmarks=landmark_step.State(of_one(landmarks(0.9))), near_px=(7.0, 8.0)
+        landmarks=landmark_step.State(of_one(landmarks(0.9))),
+        near_px=(7.0, 8.0),
+        unsearched=frame().picture,
     )
     angle = np.radians(3.0)
     turn = np.array(
@@ -284,18 +286,42 @@ def test_a_camera_that_was_moved_looks_before_its_background_as_it_is_turned(
 
     monkeypatch.setattr(track, "turned_background", turned)
     monkeypatch.setattr(moved_camera, "step", lambda *_: (moved, True))
-    shown = frame()
-    found = track._followed(state, shown)
-    assert told == [(moved.first, moved.lens, turn, shown.picture)]
+    found = track._followed(state)
+    assert told == [(moved.first, moved.lens, turn, state.unsearched)]
     assert found.silhouette.background is new
     assert (found.landmarks.known, found.near_px, found.moved) == (None, None, moved)
     monkeypatch.setattr(moved_camera, "step", lambda *_: (moved, False))
-    found = track._followed(state, shown)
-    assert found == state._replace(moved=moved)
-    report = track.look(state, shown, None)[1]
+    found = track._followed(state)
+    assert found == state._replace(moved=moved, unsearched=None)
+    report = track.look(state, frame(), None)[1]
     assert report.shift is not None
     assert report.shift.right_px == pytest.approx(90.0 * np.tan(angle), rel=0.01)
-    assert track._followed(state._replace(moved=None), shown).moved is None
+    alone = state._replace(moved=None)
+    assert track._followed(alone) is alone
+
+
+def test_a_report_does_not_wait_for_the_search_for_a_moved_camera(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """It is of the frame before, whether it is done after that one's report or before the next."""
+    Stages(monkeypatch)
+    searched: list[Any] = []
+
+    def step(state: Any, picture: Any) -> tuple[Any, bool]:
+        searched.append(picture)
+        return state, False
+
+    monkeypatch.setattr(moved_camera, "step", step)
+    first, second = frame(), frame()
+    state = track.look(track.init(setup(), room()), first, None)[0]
+    assert searched == []
+    done = track.finished(state)
+    assert [id(each) for each in searched] == [id(first.picture)]
+    assert track.finished(done) == done
+    track.look(done, second, None)
+    assert len(searched) == 1
+    track.look(state, second, None)
+    assert [id(each) for each in searched] == [id(first.picture)] * 2
 
 
 def test_who_is_nobody_starts_the_search_anew() -> None:

@@ -136,7 +136,7 @@ def run(prepared: Prepared, live: Live, bus: Bus, stop: threading.Event) -> None
             pace.done(frame.clock_s - live.offset_s, time.monotonic())
             if state.setup.settings.pictures:
                 bus.publish(_picture(view.number, frame))
-            state = state._replace(landmarks=landmark_step.searched(state.landmarks))
+            state = track.finished(state)
             heart.beat("running", **_news(live, guides, shedder, warnings))
             background, answer = learning.step(frame.picture, report.fault)
             if background is not None:

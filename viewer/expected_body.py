@@ -4,7 +4,7 @@ from typing import Final, NamedTuple
 
 from common.body.body import Bdp
 from common.body.observation import Facing, Pixel
-from common.bus.messages import Guide, ViewerNumber, place_in_rig
+from common.bus.messages import MOTION_S, Guide, ViewerNumber, place_in_rig
 
 EXPECTED: Final = ("measuring", "tracking", "predicted")
 """States of a guide that predicts the body's place; otherwise the body is searched anew."""
@@ -42,3 +42,20 @@ def expected_body(guide: Guide | None, viewer: ViewerNumber) -> ExpectedBody | N
         guide.root_px[n],
         guide.rest_row_px[n],
     )
+
+
+def followed_px(guide: Guide | None, viewer: ViewerNumber) -> Pixel | None:
+    """Where the body that the integrator surely follows is in a view; None where it is not."""
+    if guide is None or guide.status != "tracking":
+        return None
+    known = expected_body(guide, viewer)
+    return None if known is None else known.root_px
+
+
+def moving_since_s(guide: Guide | None, viewer: ViewerNumber) -> float | None:
+    """Time since when the person has moved in another view than a viewer's own, seconds; None where
+    that is unknown."""
+    if guide is None:
+        return None
+    moves = any(moves for number, moves in enumerate(guide.moves, start=1) if number != viewer)
+    return guide.captured_s - MOTION_S if moves else None

@@ -8,19 +8,20 @@ import numpy as np
 
 from common.body.body import JOINT_NAMES
 from common.body.observation import Box, Landmarks, Observation, Pixel
-from common.bus.messages import MOTION_S, Guide, View, ViewerNumber
+from common.bus.messages import Guide, View, ViewerNumber
 from common.config.settings import Settings
 from common.method import Method
 from common.raster.silhouette_report import mask_of, with_person
 from common.raster.similarity import Mask
 from common.rig.camera import Camera
+from common.video.pictures import Image
 from viewer import camera_fault, landmark_step
 from viewer.background import moved_camera
 from viewer.background.background import Background
 from viewer.background.moved_objects import Patch
 from viewer.background.turned_picture import lens_of, turned_background
 from viewer.captured_frame import CapturedFrame
-from viewer.expected_body import expected_body
+from viewer.expected_body import expected_body, followed_px, moving_since_s
 from viewer.landmarks.person_mask import LandmarkResult, Shown
 from viewer.paper import pose_search
 from viewer.people import worn_clothes
@@ -78,6 +79,8 @@ class State(NamedTuple):
     """Middle of the last silhouette, for frames without a guide's prediction."""
     moved: moved_camera.State | None = None
     """State of the search for a moved camera; None: it is off."""
+    unsearched: Image | None = None
+    """The last picture, while it is still to be searched for the camera's move."""
 
 
 def init(
@@ -153,13 +156,15 @@ def look(state: State, frame: CapturedFrame, guide: Guide | None) -> tuple[State
         frame: The picture.
         guide: The integrator's guide after the frame before; None at the start.
     """
-    moving_since_s = _moving_since_s(state, guide)
-    watched, fault = camera_fault.step(state.fault, frame.picture, frame.captured_s, moving_since_s)
+    state = _followed(state)
+    was_seen = state.near_px is not None
+    since_s = moving_since_s(guide, state.setup.viewer) if was_seen else None
+    watched, fault = camera_fault.step(state.fault, frame.picture, frame.captured_s, since_s)
     state = state._replace(fault=watched)
     if fault:
         view = without_person(state.setup.viewer, frame)
         return state, msgspec.structs.replace(view, fault=fault), mask_of(view)
-    state = _followed(_patched(state, frame.index), frame)
+    state = _patched(state, frame.index)
     remembered, seen = silhouette.step(state.silhouette, frame.picture, _near_px(state, guide))
     setup, known, shown = state.setup, state.landmarks, Shown(LandmarkResult(None))
     if setup.method.landmarks:
@@ -169,7 +174,7 @@ def look(state: State, frame: CapturedFrame, guide: Guide | None) -> tuple[State
             seen,
             setup.settings,
             alone=setup.alone,
-            root_px=_followed_px(guide, setup.viewer),
+            root_px=followed_px(guide, setup.viewer),
         )
     least_share = setup.settings.silhouette.min_height_share
     held = corrected(seen, shown.followed, least_share, shown.masks)
@@ -186,17 +191,21 @@ def look(state: State, frame: CapturedFrame, guide: Guide | None) -> tuple[State
     view = _view_of(setup.viewer, frame, seen, people)
     if state.moved is not None:
         view = msgspec.structs.replace(view, shift=state.moved.shift)
-    state = state._replace(silhouette=remembered, near_px=_middle_px(seen.box), landmarks=known)
+    state = state._replace(
+        silhouette=remembered,
+        near_px=_middle_px(seen.box),
+        landmarks=known,
+        unsearched=None if state.moved is None else frame.picture,
+    )
     return state, view, mask_of(view) if shown.others else seen.mask
 
 
-def _moving_since_s(state: State, guide: Guide | None) -> float | None:
-    """Time since when the person in this view has moved in another; None where that is unknown."""
-    if guide is None or state.near_px is None:
-        return None
-    own = state.setup.viewer
-    moves = any(moves for number, moves in enumerate(guide.moves, start=1) if number != own)
-    return guide.captured_s - MOTION_S if moves else None
+def finished(state: State) -> State:
+    """The state after what a frame's report does not wait for: the searches of its picture for
+    people and for a move of the camera. Whenever it is called before the next step, that gives the
+    same."""
+    state = _followed(state)
+    return state._replace(landmarks=landmark_step.searched(state.landmarks))
 
 
 def describe(state: State, view: View, mask: Mask, guide: Guide | None) -> tuple[State, View]:
@@ -248,16 +257,17 @@ def _view_of(
     )
 
 
-def _followed(state: State, frame: CapturedFrame) -> State:
-    """The state with the background as seen after the camera was moved."""
-    if state.moved is None:
+def _followed(state: State) -> State:
+    """The state with the background as seen after the camera was moved, by the last picture."""
+    picture = state.unsearched
+    if state.moved is None or picture is None:
         return state
-    moved, is_new = moved_camera.step(state.moved, frame.picture)
+    moved, is_new = moved_camera.step(state.moved, picture)
+    state = state._replace(moved=moved, unsearched=None)
     if not is_new:
-        return state._replace(moved=moved)
-    background = turned_background(moved.first, moved.lens, moved.turn, frame.picture)
+        return state
+    background = turned_background(moved.first, moved.lens, moved.turn, picture)
     return state._replace(
-        moved=moved,
         silhouette=silhouette.before(state.silhouette, background),
         landmarks=landmark_step.State(forgotten(state.landmarks.people)),
         near_px=None,
@@ -281,14 +291,6 @@ def _near_px(state: State, guide: Guide | None) -> Pixel | None:
     if known is not None:
         return known.root_px
     return state.near_px if state.setup.alone else None
-
-
-def _followed_px(guide: Guide | None, viewer: ViewerNumber) -> Pixel | None:
-    """Where the body that the integrator surely follows is in this view; None where it is not."""
-    if guide is None or guide.status != "tracking":
-        return None
-    known = expected_body(guide, viewer)
-    return None if known is None else known.root_px
 
 
 def _middle_px(box: Box | None) -> Pixel | None:

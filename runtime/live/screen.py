@@ -10,6 +10,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from common.bus.control_messages import Pulse
+from common.bus.messages import MOST_PEOPLE
 from common.config.settings import Settings
 from common.video.clip_facts import Clip
 from common.video.clip_sources import camera_words
@@ -17,9 +18,8 @@ from runtime.live.launch import Heard
 from runtime.live.table import table_of, table_of_people
 from runtime.terminal import warn
 
-MOST_NEWEST: Final = 32
-"""Number of the newest bodies and postures among which those of the newest instant are: more than
-there are people."""
+MOST_NEWEST: Final = 2 * MOST_PEOPLE
+"""Upper bound of the bodies of an instant."""
 
 
 class Screen:
@@ -81,10 +81,13 @@ class Screen:
 
 
 def _people(heard: Heard) -> Table | None:
-    """None in a run that follows one person, whose number is 0."""
-    bodies = heard.bodies.newest(lambda body: body.person > 0, MOST_NEWEST)
-    postures = heard.postures.newest(lambda posture: posture.person > 0, MOST_NEWEST)
-    return table_of_people(bodies, postures) if bodies else None
+    """Those of the newest instant; None in a run that follows one person, whose number is 0."""
+    last = heard.bodies.newest(lambda body: body.person > 0, 1)
+    if not last:
+        return None
+    bodies = heard.bodies.newest(lambda body: body.captured_s == last[0].captured_s, MOST_NEWEST)
+    postures = heard.postures.newest(lambda posture: posture.person > 0, 2 * len(bodies))
+    return table_of_people(bodies, postures)
 
 
 def warnings_of(pulses: Mapping[str, Pulse]) -> list[str]:
