@@ -38,6 +38,8 @@ def test_the_first_page_that_is_named_is_the_commands_own() -> None:
         "the bus: tcp/127.0.0.1:7447", "the page: http://127.0.0.1:8123", "http://127.0.0.1:1"
     )
     assert said.address == "http://127.0.0.1:8123"
+    assert said.bus == "tcp/127.0.0.1:7447"
+    assert after("the page: http://127.0.0.1:8123").bus == ""
     assert after("the page is at http://127.0.0.1:81; Ctrl-C ends it").address[-3:] == ":81"
     assert after("http://example.org:80").address == ""
 

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 from waiting import until
 
-from animator.start.wishes import Delete, Wish
+from animator.start.wishes import Again, Delete, Wish
 from tritrack.starting.job_plan import Plan, kept_calibration
 from tritrack.starting.job_queue import JobQueue
 from tritrack.starting.start_desk import Given, StartDesk
@@ -61,6 +61,24 @@ def test_what_a_job_needs_is_not_deleted(tmp_path: Path) -> None:
     desk.turn(page)  # type: ignore[arg-type]
     assert page.told == ["room is deleted"]
     assert not rig.exists()
+    desk.close()
+
+
+def test_the_videos_of_a_job_that_failed_can_be_had_again(tmp_path: Path) -> None:
+    """With the names that their user knows, not those of a clip's cameras."""
+    queue = JobQueue([sys.executable, "-c"])
+    desk, page = StartDesk(Given(tmp_path / "runs"), queue), Page(Again(1))
+    copied = tmp_path / "runs/.clips/walk/cam1.avi"
+    copied.parent.mkdir(parents=True)
+    copied.write_bytes(b"video")
+    job = queue.add(Plan("fails", ("exit(2)",), ((Path("up/front.avi"), copied),), run="walk"))
+    assert until(lambda: desk.turn(Page()) or job.is_over)  # type: ignore[arg-type]
+    assert job.shown().again
+    assert copied.is_file(), "they are kept as long as the job is shown"
+    desk.turn(page)  # type: ignore[arg-type]
+    assert [path.name for path in (tmp_path / "runs/.uploads").glob("*/*")] == ["front.avi"]
+    assert not copied.parent.exists()
+    assert not job.shown().again
     desk.close()
 
 

@@ -25,6 +25,7 @@ from animator.start.wishes import (
     CHUNK_BYTES,
     CHUNK_HEAD,
     MOST_TEXT_BYTES,
+    Again,
     Begin,
     Board,
     Cancel,
@@ -130,7 +131,7 @@ def test_wishes_and_pieces_of_files_are_heard(page: StartPage) -> None:
 WISHES = (
     *(Begin(1, "a.avi", 9), Drop(None), Raise(1), Work("single"), Board("a4"), Demo(), Cancel(1)),
     *(Open("a", "replay"), Export("a", "bvh"), Report("a"), Compare("a", "b"), Delete("run", "a")),
-    *(Look(on=True), Live(("video0",))),
+    *(Again(1), Look(on=True), Live(("video0",))),
 )
 
 

@@ -36,6 +36,21 @@ def test_a_videos_facts_are_read_from_it(tmp_path: Path) -> None:
     assert str(tmp_path) not in said
 
 
+def test_a_picture_is_no_video_nor_is_a_file_twice(tmp_path: Path) -> None:
+    picture, one, other = tmp_path / "photo.png", tmp_path / "a.avi", tmp_path / "b.avi"
+    cv2.imwrite(str(picture), np.zeros((100, 100, 3), np.uint8))
+    one.write_bytes(b"x" * 100)
+    other.write_bytes(b"x" * 100)
+    with Decoder() as decoder:
+        size = picture.stat().st_size
+        assert "one picture, no video" in facts_of(Upload(1, picture, size, size), decoder).fault
+        first, second = Upload(1, one, 100, 100, "walk 1.avi"), Upload(2, other, 100, 100)
+        found = facts_of(second, decoder, [first])
+        assert found == Facts(fault="the same file as walk 1.avi: take one away", twin=1)
+        other.write_bytes(b"y" * 100)
+        assert facts_of(second, decoder, [first]).twin is None
+
+
 @pytest.mark.parametrize(
     ("other", "says"),
     [
@@ -44,10 +59,10 @@ def test_a_videos_facts_are_read_from_it(tmp_path: Path) -> None:
     ],
 )
 def test_what_differs_between_two_is_said(other: VideoInfo, says: str) -> None:
-    paths = [Path("a.avi"), Path("b.avi")]
-    assert says in together(paths, [WALK, other])
-    assert says not in together(paths, [WALK, WALK])
-    assert "a.avi is camera 1" in together(paths, [WALK, other])
+    names = ["a.avi", "b.avi"]
+    assert says in together(names, [WALK, other])
+    assert says not in together(names, [WALK, WALK])
+    assert "a.avi is camera 1" in together(names, [WALK, other])
 
 
 def test_how_late_a_video_is_by_its_sound_stands_beside_it() -> None:

@@ -43,6 +43,27 @@ def test_a_file_never_grows_beyond_what_was_said(uploads: Uploads) -> None:
     assert found.path.stat().st_size == 10
 
 
+def test_a_file_keeps_its_users_name_for_it(uploads: Uploads) -> None:
+    found = uploads.begin(Begin(7, "C:\\Videos\\Tür 'vorne' 1.mp4", 10))
+    assert (found.title, found.path.name) == ("Tür 'vorne' 1.mp4", "Tur_vorne_1.mp4")
+
+
+def test_a_file_of_a_job_can_be_had_again(uploads: Uploads, tmp_path: Path) -> None:
+    kept = tmp_path / "cam1.avi"
+    kept.write_bytes(b"video")
+    found = uploads.put_back(kept, "walk.avi")
+    kept.unlink()
+    assert found.is_whole
+    assert (found.path.name, found.path.read_bytes()) == ("walk.avi", b"video")
+    with pytest.raises(UploadRefused, match="drop the file again"):
+        uploads.put_back(kept, "walk.avi")
+    kept.write_bytes(b"video")
+    for _ in range(MOST_VIEWS - 1):
+        uploads.put_back(kept, "walk.avi")
+    with pytest.raises(UploadRefused, match="take one away"):
+        uploads.put_back(kept, "walk.avi")
+
+
 def test_what_belongs_to_no_file_changes_nothing(uploads: Uploads) -> None:
     assert uploads.take(piece(1, 0, b"x")) is None
 
@@ -55,7 +76,7 @@ def test_what_belongs_to_no_file_changes_nothing(uploads: Uploads) -> None:
         (".bashrc", "bashrc"),
         ("-rf.avi", "rf.avi"),
         ("a\0b\n.avi", "a_b_.avi"),
-        ("größe.mp4", "gr_e.mp4"),
+        ("größe Å.mp4", "grosse_A.mp4"),
         ("..", "video"),
         ("x" * 300 + ".mkv", "x" * 76 + ".mkv"),
         ("walk." + "x" * 200, "walk." + "x" * 10),

@@ -77,6 +77,10 @@ class ShownJob(msgspec.Struct, frozen=True):
     """The run that it writes."""
     address: str = ""
     """Its own page."""
+    bus: str = ""
+    """Where programs hear its poses."""
+    again: bool = False
+    """Whether its videos can be had in the tray again."""
 
 
 class Jobs(Section, frozen=True):

@@ -85,6 +85,12 @@ class Cancel(Wish, frozen=True):
     job: int
 
 
+class Again(Wish, frozen=True):
+    """The videos of a job that failed or was cancelled shall be in the tray again."""
+
+    job: int
+
+
 class Open(Wish, frozen=True):
     """A page of a run shall be opened."""
 
@@ -135,7 +141,7 @@ class Live(Wish, frozen=True):
     """The live page may show small pictures."""
 
 
-AnyWish = (Begin | Drop | Raise | Work | Board | Demo | Cancel | Open) | (
+AnyWish = (Begin | Drop | Raise | Work | Board | Demo | Cancel | Open | Again) | (
     Export | Report | Compare | Delete | Look | Live
 )
 

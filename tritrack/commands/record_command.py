@@ -34,12 +34,12 @@ def record(
     """
     from common.video.clip_sources import ClipError
     from runtime.live.session import stopped_by_signals
-    from tritrack.machine_cameras.camera_list import NONE, cameras_of
+    from tritrack.machine_cameras.camera_list import cameras_of, no_camera
     from tritrack.recording_cameras.record_clip import record_clip
 
     given = camera or [str(found.source) for found in cameras_of(())[:2]]
     if not given:
-        raise ClipError(NONE)
+        raise ClipError(no_camera("tritrack record"))
     sources = [int(each) if each.isdecimal() else each for each in given]
     with stopped_by_signals(console) as stop:
         facts = record_clip(sources, out, seconds, stop, lambda text: say(console, text), force)

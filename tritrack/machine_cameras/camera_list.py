@@ -11,11 +11,20 @@ V4L: Final = Path("/sys/class/video4linux")
 """Where Linux lists its cameras."""
 TRIED: Final = 4
 """Devices that are tried where the platform has no list: they can only be opened to be found."""
-NONE: Final = (
+_NONE: Final = (
     "This machine has no camera that the system knows. Plug one in, then look again; where it is "
     "plugged in, see that you may use it (group video) and that tritrack doctor names it. A "
-    "recorded video plays as a camera: --camera VIDEO"
+    "recorded video plays as a camera: {command} --camera VIDEO"
 )
+
+
+def no_camera(command: str) -> str:
+    """What to do where there is none.
+
+    Args:
+        command: The present one, which takes videos instead.
+    """
+    return _NONE.format(command=command)
 
 
 class FoundCamera(NamedTuple):

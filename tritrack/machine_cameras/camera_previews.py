@@ -19,7 +19,7 @@ from common.video.pictures import (
     VideoInfo,
     is_recorded,
 )
-from tritrack.machine_cameras.camera_list import NONE, FoundCamera
+from tritrack.machine_cameras.camera_list import FoundCamera, no_camera
 from tritrack.marking.stills import Running
 
 BOUND: Final = (320, 240)
@@ -136,4 +136,4 @@ class Previews:
             else ShownCamera(each.camera, each.name, each.where, "", "", "")
             for each in cameras
         ]
-        return Cameras(self.on, rows, "" if rows else NONE)
+        return Cameras(self.on, rows, "" if rows else no_camera("tritrack start"))

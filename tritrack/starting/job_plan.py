@@ -54,6 +54,11 @@ class Plan(NamedTuple):
     """Files that it reads beside those that its command names."""
 
     @property
+    def videos(self) -> tuple[tuple[Path, Path], ...]:
+        """Of `placed`, those that a run has of its own."""
+        return tuple(each for each in self.placed if self.run and each[1].suffix != ".json")
+
+    @property
     def command(self) -> str:
         """As a user would type it."""
         return f"tritrack {shlex.join(self.arguments)}"

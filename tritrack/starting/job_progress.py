@@ -7,6 +7,8 @@ from typing import Final, NamedTuple
 PREFIX: Final = "progress "
 ADDRESS: Final = re.compile(r"http://127\.0\.0\.1:\d+")
 """A page on this machine."""
+BUS: Final = "the bus: "
+"""What the line begins with that says where a live run is heard."""
 MOST_LINES: Final = 60
 """Lines of a command that are kept, the newest."""
 MOST_LETTERS: Final = 500
@@ -38,6 +40,12 @@ class Progress(NamedTuple):
         """Of the command's own page; "" until it tells."""
         found = (ADDRESS.search(line) for line in self.lines)
         return next((one[0] for one in found if one), "")
+
+    @property
+    def bus(self) -> str:
+        """Where programs hear a live run; "": there is none."""
+        found = [line for line in self.lines if line.startswith(BUS)]
+        return found[0].removeprefix(BUS) if found else ""
 
     @property
     def fault(self) -> str:

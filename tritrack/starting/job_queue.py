@@ -50,6 +50,13 @@ class Job:
         """Whether it is neither waiting nor running."""
         return self.state not in ("waiting", "running")
 
+    @property
+    def gives_back(self) -> bool:
+        """Whether its videos may come to the tray again: it left no run."""
+        return self.state in ("failed", "cancelled") and any(
+            to.exists() for _, to in self.plan.videos
+        )
+
     def shown(self) -> ShownJob:
         """In the form for browsers."""
         running = self.state == "running"
@@ -65,6 +72,8 @@ class Job:
             told=self.told,
             run=self.plan.run,
             address=self.progress.address if running and self.plan.kind == "page" else "",
+            bus=self.progress.bus if running else "",
+            again=self.gives_back,
         )
 
 
@@ -123,6 +132,16 @@ class JobQueue:
         words += [path for plan in going for path in plan.needs]
         written = any(plan.run and plan.run == path.name for plan in going)
         return written or any(word == path or path in word.parents for word in words)
+
+    def videos_of(self, number: int) -> tuple[tuple[Path, str], ...]:
+        """The videos that a job that failed or was cancelled had copied, with their names."""
+        jobs = [job for job in self._jobs if job.number == number and job.gives_back]
+        return tuple((to, source.name) for job in jobs for source, to in job.plan.videos)
+
+    def keeps(self, path: Path) -> bool:
+        """Whether a job uses a path, or its videos are in there and can be had again."""
+        given_back = [to for job in self._jobs if job.gives_back for _, to in job.plan.videos]
+        return self.uses(path) or any(path in to.parents for to in given_back)
 
     def shown(self) -> Jobs:
         """All of them."""

@@ -11,6 +11,7 @@ from animator.page.wish_page import Told
 from animator.start.sections import Got, Hello
 from animator.start.start_page import StartPage
 from animator.start.wishes import (
+    Again,
     AnyWish,
     Begin,
     Cancel,
@@ -31,10 +32,10 @@ from tritrack.starting.aside import Aside
 from tritrack.starting.calibration_list import remove_calibration
 from tritrack.starting.job_plan import PlanError, kept_calibration
 from tritrack.starting.job_queue import Job, JobQueue
-from tritrack.starting.start_files import clean, delete_run, place, served
+from tritrack.starting.start_files import clean, delete_run, place, remove, served
 from tritrack.starting.start_lists import StartLists
 from tritrack.starting.tray import Facts, facts_of, late_by_sound, shown_tray
-from tritrack.starting.uploads import FOLDER, MOST_BYTES, UploadRefused, Uploads
+from tritrack.starting.uploads import FOLDER, MOST_BYTES, Upload, UploadRefused, Uploads
 from tritrack.starting.wish_plans import Starting, There, plan_of
 
 JOBS_S: Final = 0.3
@@ -130,6 +131,11 @@ class StartDesk:
         """
         if isinstance(wish, Chunk | Begin | Drop | Raise):
             self._receive(wish, page)
+        elif isinstance(wish, Again):
+            for path, name in self._queue.videos_of(wish.job):
+                self._look_at(self._uploads.put_back(path, name))
+                remove(path)
+            clean(self._runs, self._queue.keeps)
         elif isinstance(wish, Cancel):
             self._queue.cancel(wish.job)
         elif isinstance(wish, Look):
@@ -147,6 +153,9 @@ class StartDesk:
             there = {one.number for one in self._uploads.files}
             self._facts = {n: facts for n, facts in self._facts.items() if n in there}
             self._late_s = {pair: s for pair, s in self._late_s.items() if {*pair} <= there}
+            for one in self._uploads.files:
+                if one.number in self._facts and self._facts[one.number].twin not in {None, *there}:
+                    self._look_at(one)
             return
         if isinstance(wish, Raise):
             self._uploads.earlier(wish.file)
@@ -156,8 +165,14 @@ class StartDesk:
             return
         page.tell(Got(found.number, found.got))
         if found.is_whole and found.number not in self._facts:
-            upload = found
-            self._aside.ask(lambda decoder: facts_of(upload, decoder), self._keep(upload.number))
+            self._look_at(found)
+
+    def _look_at(self, upload: Upload) -> None:
+        """Have the facts of a whole file found."""
+        others = [one for one in self._uploads.files if one.is_whole and one is not upload]
+        self._aside.ask(
+            lambda decoder: facts_of(upload, decoder, others), self._keep(upload.number)
+        )
 
     def _keep(self, number: int) -> Callable[[Facts], None]:
         def keep(facts: Facts) -> None:
@@ -195,7 +210,7 @@ class StartDesk:
         if self._queue.uses(path):
             raise PlanError(f"a job uses {wish.name}: end it first")
         gone = (delete_run if is_run else remove_calibration)(self._runs, wish.name)
-        clean(self._runs, self._queue.uses)
+        clean(self._runs, self._queue.keeps)
         text = f"{wish.name} is deleted" if gone else f"there is no {wish.what} {wish.name!r}"
         page.tell(Told(text, gone))
         self._lists.hurry()
@@ -206,7 +221,7 @@ class StartDesk:
             if job.plan.report is not None and job.state == "done":
                 job.plan.report.write_text("\n".join(job.progress.lines) + "\n")
         if ended:
-            clean(self._runs, self._queue.uses)
+            clean(self._runs, self._queue.keeps)
             self._lists.hurry()
         page.show(self._queue.shown())
 

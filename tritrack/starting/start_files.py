@@ -1,6 +1,5 @@
 """The files beside the runs: a job's own videos, and what is cleaned, deleted and served."""
 
-import os
 import shutil
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -12,6 +11,7 @@ from common.atomic_file import unwritten
 from tritrack.starting.calibration_list import calibration_file
 from tritrack.starting.job_plan import CLIPS, Plan, PlanError
 from tritrack.starting.run_list import found_runs, made_by, run_file, run_folder
+from tritrack.starting.uploads import link_or_copy
 
 SETTINGS: Final = ".settings"
 """Folder of the settings of live runs that the page began."""
@@ -35,10 +35,7 @@ def place(plan: Plan) -> None:
         try:
             target.parent.mkdir(parents=True, exist_ok=True)
             target.unlink(missing_ok=True)
-            try:
-                os.link(source, target)
-            except OSError:
-                shutil.copy2(source, target)
+            link_or_copy(source, target)
         except OSError as error:
             raise PlanError(unwritten(target, error, "drop the files again")) from error
     if plan.report is not None:

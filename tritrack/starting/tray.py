@@ -1,5 +1,6 @@
 """What the dropped files are, one by one and together, in words."""
 
+import filecmp
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
@@ -29,16 +30,40 @@ class Facts(NamedTuple):
 
     info: VideoInfo | None = None
     fault: str = ""
+    twin: int | None = None
+    """Number of a file of the same content."""
 
 
-def facts_of(upload: Upload, decoder: Decoder) -> Facts:
-    """The facts of a video; those of a calibration are its command's to find."""
+def facts_of(upload: Upload, decoder: Decoder, others: Sequence[Upload] = ()) -> Facts:
+    """The facts of a video; those of a calibration are its command's to find.
+
+    Args:
+        upload: The file.
+        decoder: Reads it.
+        others: The other whole files: none may be the same.
+    """
     if upload.is_calibration:
         return Facts()
     try:
-        return Facts(probed(str(upload.path), decoder))
-    except (ClipError, DecoderDied) as error:
-        return Facts(fault=str(error).replace(str(upload.path), upload.path.name))
+        twin = next((one for one in others if is_same(one, upload)), None)
+        if twin is not None:
+            return Facts(fault=f"the same file as {twin.title}: take one away", twin=twin.number)
+        info = probed(str(upload.path), decoder)
+    except (ClipError, DecoderDied, OSError) as error:
+        said = str(error).replace(str(upload.path), upload.title)
+        return Facts(fault=f"{said}. Take it away if it is no video.")
+    if info.frames == 1 or not (info.frames > 0 or info.fps > 0):
+        return Facts(fault=f"{upload.title} is one picture, no video: take it away")
+    return Facts(info)
+
+
+def is_same(one: Upload, other: Upload) -> bool:
+    """Whether two files have the same content.
+
+    Raises:
+        OSError: When one cannot be read.
+    """
+    return one.bytes == other.bytes and filecmp.cmp(one.path, other.path, shallow=False)
 
 
 def late_by_sound(first: Path, other: Path) -> float | None:
@@ -63,7 +88,7 @@ def words_of(info: VideoInfo) -> str:
     return f"{length_s(info):.1f} s, {rate}, {info.width}x{info.height}, {shape}"
 
 
-def together(paths: Sequence[Path], infos: Sequence[VideoInfo]) -> str:
+def together(names: Sequence[str], infos: Sequence[VideoInfo]) -> str:
     """What several videos are together, and what differs between them."""
     if not infos:
         return ""
@@ -72,7 +97,7 @@ def together(paths: Sequence[Path], infos: Sequence[VideoInfo]) -> str:
     if len(infos) > MOST_VIEWS:
         return f"{len(infos)} videos: {MOST_VIEWS} at most make a clip."
     said = [
-        f"{len(infos)} videos of one scene, by {len(infos)} cameras: {paths[0].name} is camera 1, "
+        f"{len(infos)} videos of one scene, by {len(infos)} cameras: {names[0]} is camera 1, "
         "which should see the person's front."
     ]
     pairs = [*pairwise(infos)]
@@ -100,7 +125,7 @@ def shown_tray(
     infos = [info for one in ready if (info := facts[one.number].info) is not None]
     calibrations = sum(one.is_calibration for one in ready)
     whole = len(ready) == len(files)
-    said = together([one.path for one in ready if not one.is_calibration], infos)
+    said = together([one.title for one in ready if not one.is_calibration], infos)
     if calibrations:
         said = "A calibration of another program."
         said += "" if len(files) == 1 else " Take it over by itself: take the other files away."
@@ -120,7 +145,7 @@ def _shown(upload: Upload, facts: Facts | None, late_s: float | None) -> ShownFi
     late = "" if late_s is None else f", {late_s:+.2f} s late by its sound"
     return ShownFile(
         file=upload.number,
-        name=upload.path.name,
+        name=upload.title,
         bytes=upload.bytes,
         got=upload.got,
         facts="" if info is None else words_of(info) + late,

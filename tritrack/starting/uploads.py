@@ -2,7 +2,9 @@
 
 import os
 import re
+import secrets
 import shutil
+import unicodedata
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -26,6 +28,10 @@ SPARE_BYTES: Final = 1 << 30
 """Free space that a file must leave on the disk, bytes."""
 MOST_LETTERS: Final = 80
 """Of a file's name."""
+MOST_CALLED: Final = 200
+"""Of its user's name for it, from the end."""
+MOST_NUMBER: Final = 1 << 32
+"""Upper bound of a file's number."""
 
 
 class UploadRefused(ValueError):
@@ -40,6 +46,13 @@ class Upload:
     path: Path
     bytes: int
     got: int = 0
+    called: str = ""
+    """What its user calls it."""
+
+    @property
+    def title(self) -> str:
+        """Its name for its user."""
+        return self.called or self.path.name
 
     @property
     def is_whole(self) -> bool:
@@ -52,14 +65,32 @@ class Upload:
         return self.path.suffix.lower() in CALIBRATIONS
 
 
+def last_part(name: str) -> str:
+    """A file's name without folders, of any system."""
+    return re.split(r"[\\/]", name)[-1]
+
+
 def safe_name(name: str) -> str:
     """A file's name without folders, hidden names and signs that a shell or a system minds."""
-    last = re.split(r"[\\/]", name)[-1]
-    plain = re.sub(r"[^A-Za-z0-9._-]+", "_", last).lstrip("._-")
+    letters = unicodedata.normalize("NFKD", last_part(name).replace("ß", "ss"))
+    bare = "".join(each for each in letters if not unicodedata.combining(each))
+    plain = re.sub(r"[^A-Za-z0-9._-]+", "_", bare).lstrip("._-")
     stem, dot, suffix = plain.rpartition(".")
     suffix = suffix[:10]
     kept = f"{stem[: MOST_LETTERS - len(suffix) - 1]}.{suffix}" if dot and stem else plain
     return kept[:MOST_LETTERS] or "video"
+
+
+def link_or_copy(source: Path, target: Path) -> None:
+    """Put a file at another path: as a link, else a copy.
+
+    Raises:
+        OSError: When neither can be made.
+    """
+    try:
+        os.link(source, target)
+    except OSError:
+        shutil.copy2(source, target)
 
 
 def refuse_other_page(folder: Path) -> None:
@@ -108,12 +139,12 @@ class Uploads:
             UploadRefused: When it is too large, empty, one too many, or there is no space.
         """
         name = safe_name(wish.name)
-        found = Upload(wish.file, self._folder / str(wish.file) / name, wish.bytes)
+        called = last_part(wish.name)[-MOST_CALLED:]
+        found = Upload(wish.file, self._folder / str(wish.file) / name, wish.bytes, called=called)
         most = MOST_CALIBRATION_BYTES if found.is_calibration else self._most_bytes
-        if not 0 <= wish.file < 1 << 32 or any(one.number == wish.file for one in self.files):
+        if not 0 <= wish.file < MOST_NUMBER or any(one.number == wish.file for one in self.files):
             raise UploadRefused(f"{name}: a file with this number is there already")
-        if len(self.files) >= MOST_VIEWS:
-            raise UploadRefused(f"{name}: {MOST_VIEWS} files are there already: take one away")
+        self._refuse_one_more(name)
         if wish.bytes <= 0:
             raise UploadRefused(f"{name} is empty: copy or record it again")
         if wish.bytes > most:
@@ -128,6 +159,28 @@ class Uploads:
         self._open[wish.file] = found.path.open("xb")
         self.files.append(found)
         return found
+
+    def put_back(self, path: Path, name: str) -> Upload:
+        """Take a file that lies on this disk already, by its former name.
+
+        Raises:
+            UploadRefused: When it is one too many, or cannot be linked.
+        """
+        self._refuse_one_more(name)
+        number = secrets.randbelow(MOST_NUMBER)
+        try:
+            found = Upload(number, self._folder / str(number) / name, path.stat().st_size)
+            found.path.parent.mkdir()
+            link_or_copy(path, found.path)
+        except OSError as error:
+            raise UploadRefused(unwritten(path, error, "drop the file again")) from error
+        found.got = found.bytes
+        self.files.append(found)
+        return found
+
+    def _refuse_one_more(self, name: str) -> None:
+        if len(self.files) >= MOST_VIEWS:
+            raise UploadRefused(f"{name}: {MOST_VIEWS} files are there already: take one away")
 
     def take(self, chunk: Chunk) -> Upload | None:
         """The file after one more piece of it; a piece that was there already changes nothing.

@@ -11,9 +11,15 @@ import { Uploader } from "./upload.js";
 
 const AGAIN_MS = 500; // between two tries to reach the server
 
+const BEGIN = new Set(["work", "live", "demo", "board", "open", "export", "report", "compare"]); // wishes that a job follows from
+
 const link = {
   send(said) { if (link.socket?.readyState === WebSocket.OPEN) link.socket.send(said); },
-  say(wish) { link.send(JSON.stringify(wish)); },
+  wished: false, // whether a job that this page asked for is still to come
+  say(wish) {
+    link.wished ||= BEGIN.has(wish.type);
+    link.send(JSON.stringify(wish));
+  },
 };
 function tell({ text, well }) {
   at("told").textContent = text;
