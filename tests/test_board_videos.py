@@ -3,8 +3,10 @@
 from collections.abc import Iterator
 from typing import Any
 
+import cv2
 import numpy as np
 import pytest
+from filmed_board import board_picture
 from rich.progress import Progress
 
 from calibration.board.board import BOARDS, Board, chessboard
@@ -162,3 +164,20 @@ def test_a_film_without_a_board_is_refused_with_the_cure_of_that_board(
         "no board is found in one: a chessboard of 8x5 squares must be seen whole, its white rim "
         "too; all squares are counted, not the corners between them"
     )
+
+
+@pytest.mark.parametrize("mirrored", [True, False])
+def test_a_board_in_a_mirror_is_named_with_its_cure(
+    monkeypatch: pytest.MonkeyPatch, mirrored: bool
+) -> None:
+    """The second of two programs or drivers that mirror what they show."""
+    board = cv2.resize(board_picture(A3), (300, 240), interpolation=cv2.INTER_AREA)
+    picture = np.full((480, 640, 3), 120, np.uint8)
+    if mirrored:
+        picture[100:340, 150:450] = board[:, ::-1, None]
+    films = Films({"one": VideoInfo(640, 480, 5.0, 2)}, {"one": {}})
+    monkeypatch.setattr(films, "frames", lambda *_: iter([Decoded(0, 0.0, picture)]))
+    monkeypatch.setattr(board_videos, "Decoder", lambda: films)
+    with pytest.raises(CalibrationError) as refused:
+        looked_through(["one"], (A4, A3), Progress(disable=True))
+    assert ("switch mirroring off" in str(refused.value)) == mirrored

@@ -4,16 +4,19 @@ import json
 import os
 import threading
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 from urllib.request import urlopen
 
+import cv2
 import numpy as np
 import pytest
 
 pytest.importorskip("websockets", reason="the page is an extra: install tritrack[page]")
 
 from browser import open_tab
+from filmed_board import board_picture
 from spoiling import film_of, write_video
 from test_live import CHROMIUM, SIZES, SOFT, Looking
 from test_page_server import free_port
@@ -21,6 +24,7 @@ from test_page_server import free_port
 from animator.page.door import Entrance, invitation_of
 from animator.start.start_page import StartPage
 from animator.start.wishes import CHUNK_BYTES
+from calibration.board.board import BOARDS
 from calibration.foreign.toml_rig import toml_text
 from common.config import config_file
 from common.rig.rig_file import load_rig
@@ -48,12 +52,11 @@ class Started(NamedTuple):
     address: str
 
 
-@pytest.fixture
-def started(tmp_path: Path, clip: Path) -> Iterator[Started]:
-    """With an empty folder of runs, and a clip's videos as cameras."""
-    videos = tuple(sorted(clip.glob("cam*.avi")))
-    runs, port, entrance = tmp_path / "runs", free_port(), Entrance(token=TOKEN)
-    desk = StartDesk(Given(runs, videos))
+@contextmanager
+def served(runs: Path, cameras: tuple[Path, ...]) -> Iterator[Started]:
+    """The page in this process, with videos that play as cameras."""
+    port, entrance = free_port(), Entrance(token=TOKEN)
+    desk = StartDesk(Given(runs, cameras))
     page = StartPage(desk.hello, desk.file, port, entrance)
     over = threading.Event()
 
@@ -68,6 +71,13 @@ def started(tmp_path: Path, clip: Path) -> Iterator[Started]:
     thread.join()
     page.close()
     desk.close()
+
+
+@pytest.fixture
+def started(tmp_path: Path, clip: Path) -> Iterator[Started]:
+    """With an empty folder of runs, and a clip's videos as cameras."""
+    with served(tmp_path / "runs", tuple(sorted(clip.glob("cam*.avi")))) as one:
+        yield one
 
 
 @pytest.fixture(scope="session")
@@ -371,3 +381,36 @@ def test_two_videos_calibrate_their_cameras_and_say_how_well(
     assert load_rig(started.runs / ".calibrations/clip.json").cameras[1].name == "cam2"
     assert looking.until("!!document.querySelector('#do-track')"), "the tray keeps its files"
     assert not (started.runs / ".clips/clip").exists()
+
+
+@pytest.fixture
+def boards(tmp_path: Path) -> tuple[Path, Path]:
+    """A board that rests before two cameras; the second one's picture is mirrored."""
+    board = cv2.resize(board_picture(BOARDS["a3"]), (300, 240), interpolation=cv2.INTER_AREA)
+    picture = np.full((480, 640, 3), 120, np.uint8)
+    picture[100:340, 150:450] = board[..., None]
+    paths = tmp_path / "left.avi", tmp_path / "right.avi"
+    write_video(paths[0], [picture] * 30)
+    write_video(paths[1], [np.ascontiguousarray(picture[:, ::-1])] * 30)
+    return paths
+
+
+@pytest.mark.slow
+def test_a_board_is_watched_and_the_cameras_are_calibrated_by_what_it_showed(
+    tmp_path: Path, boards: tuple[Path, Path]
+) -> None:
+    if CHROMIUM is None:
+        pytest.skip("no Chromium here: the page is not looked at")
+    with served(tmp_path / "runs", boards) as started, open_tab(CHROMIUM, SOFT) as tab:
+        looking = Looking(tab, started.address, SIZES["desk"])
+        click(looking, "#use-file0")
+        click(looking, "#use-file1")
+        click(looking, "#watch")
+        assert looking.until("document.querySelector('#board-says').innerText.includes('mirrored')")
+        assert "Camera 1: 1 pose, " in words(looking, "#board-says")
+        assert "upper left" in words(looking, "#board-says")
+        assert looking.until("document.querySelector('#cameras img')?.naturalWidth == 480")
+        click(looking, "#watched")
+        assert job_ended(looking) == "failed"
+        assert "cam2.avi: it is read in the mirror" in words(looking, "#jobs [role=alert]")
+        assert "calibrate board" in words(looking, "#jobs code")

@@ -40,6 +40,8 @@ from animator.start.wishes import (
     Open,
     Raise,
     Report,
+    Watch,
+    Watched,
     Wish,
     WishError,
     Work,
@@ -131,7 +133,7 @@ def test_wishes_and_pieces_of_files_are_heard(page: StartPage) -> None:
 WISHES = (
     *(Begin(1, "a.avi", 9), Drop(None), Raise(1), Work("single"), Board("a4"), Demo(), Cancel(1)),
     *(Open("a", "replay"), Export("a", "bvh"), Report("a"), Compare("a", "b"), Delete("run", "a")),
-    *(Again(1), Look(on=True), Live(("video0",))),
+    *(Again(1), Watch(("video0",)), Watched(30.0), Look(on=True), Live(("video0",))),
 )
 
 

@@ -140,6 +140,10 @@ class Cameras(Section, frozen=True):
     cameras: list[ShownCamera]
     says: str
     """What to do where there are none."""
+    watching: bool = False
+    """Whether the calibration board is looked for."""
+    board: tuple[str, ...] = ()
+    """What it showed so far, and what is still needed."""
 
 
 class ShownCalibration(msgspec.Struct, frozen=True):

@@ -132,6 +132,20 @@ class Look(Wish, frozen=True):
     on: bool
 
 
+class Watch(Wish, frozen=True):
+    """The calibration board shall be looked for in these cameras."""
+
+    cameras: tuple[str, ...]
+    """In the order of their numbers; none: no longer."""
+
+
+class Watched(Wish, frozen=True):
+    """The cameras shall be calibrated by what the board showed them."""
+
+    square_mm: float | None = None
+    """Side of a square, as measured; None: as printed."""
+
+
 class Live(Wish, frozen=True):
     """Track live, by these cameras."""
 
@@ -142,7 +156,7 @@ class Live(Wish, frozen=True):
 
 
 AnyWish = (Begin | Drop | Raise | Work | Board | Demo | Cancel | Open | Again) | (
-    Export | Report | Compare | Delete | Look | Live
+    Export | Report | Compare | Delete | Look | Watch | Watched | Live
 )
 
 

@@ -44,11 +44,12 @@ def coverage_picture(
 ) -> NDArray[np.uint8]:
     """The cameras' pictures side by side, darkened, with the covered cells in green."""
     return np.concatenate(
-        [_tinted(picture, some) for picture, some in zip(pictures, cells, strict=True)], axis=1
+        [tinted(picture, some) for picture, some in zip(pictures, cells, strict=True)], axis=1
     )
 
 
-def _tinted(picture: NDArray[np.uint8], cells: NDArray[np.int64]) -> NDArray[np.uint8]:
+def tinted(picture: NDArray[np.uint8], cells: NDArray[np.int64]) -> NDArray[np.uint8]:
+    """A picture, WIDE_PX wide and darkened, with the covered cells in green."""
     size = (WIDE_PX, round(WIDE_PX * picture.shape[0] / picture.shape[1]))
     ground = cv2.resize(picture, size, interpolation=cv2.INTER_AREA).astype(float) / 2
     share = np.minimum(cells, OFTEN).astype(np.float32) / OFTEN * 0.6

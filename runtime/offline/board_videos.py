@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import Final, NamedTuple
 
+import cv2
 import numpy as np
 from rich.progress import Progress
 
@@ -22,6 +23,13 @@ USUAL_HZ: Final = 30.0
 WIDEST_PX: Final = 1920
 """Width to which wider pictures are reduced, pixels: larger ones give no better corners, and
 take long."""
+
+
+MIRROR: Final = (
+    "it is read in the mirror image alone: switch mirroring off in the camera's own program or "
+    "driver, and record it again"
+)
+"""What to do where the picture is mirrored."""
 
 
 class Looked(NamedTuple):
@@ -72,9 +80,24 @@ def _looked(decoder: Decoder, video: str, boards: Sequence[Board], tell: Tell) -
                 break
         tell(min(1.0, shown.index / max(info.frames, 1)))
     if board is None or first is None:
-        raise CalibrationError(f"no board is found in {video}: {_cure(boards)}")
+        mirrored = _is_mirrored(decoder, video, size, every, boards)
+        raise CalibrationError(
+            f"no board is found in {video}: {MIRROR if mirrored else _cure(boards)}"
+        )
     return Looked(
         BoardVideo(video, (info.width, info.height), np.array(times), np.array(px)), board, first
+    )
+
+
+def _is_mirrored(
+    decoder: Decoder, video: str, size: Size, every: int, boards: Sequence[Board]
+) -> bool:
+    """Whether a board can be read in the mirror image of a video; a chessboard is the same."""
+    marked = [board for board in boards if board.first_marker is not None]
+    return any(
+        corners_in(cv2.flip(shown.picture, 1), board) is not None
+        for shown in decoder.frames(video, size, Wanted(every))
+        for board in marked
     )
 
 

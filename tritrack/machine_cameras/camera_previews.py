@@ -3,10 +3,12 @@
 import threading
 import time
 from collections.abc import Generator, Sequence
+from functools import partial
+from pathlib import Path
 from typing import Final
 
-from animator.marking.marking_page import LIVE
 from animator.start.sections import Cameras, ShownCamera
+from calibration.board.board_progress import words_of
 from common.config.picture_size import working_size
 from common.video.clip_sources import ClipError
 from common.video.clips import probed
@@ -14,16 +16,18 @@ from common.video.decoding import Decoder
 from common.video.pictures import (
     Decoded,
     DecoderDied,
+    Image,
     Size,
     Source,
     VideoInfo,
     is_recorded,
 )
+from tritrack.machine_cameras.board_watch import BoardWatch
 from tritrack.machine_cameras.camera_list import FoundCamera, no_camera
-from tritrack.marking.stills import Running
+from tritrack.marking.stills import Running, jpeg_of
 
-BOUND: Final = (320, 240)
-"""Bound of a preview, pixels."""
+BOUND: Final = (640, 480)
+"""Bound of a preview, pixels: a board can be read in it."""
 
 
 class Playing:
@@ -60,9 +64,10 @@ class Preview:
         self._thread = threading.Thread(target=self._open, daemon=True)
         self._thread.start()
 
-    def jpeg(self) -> bytes | None:
+    @property
+    def newest(self) -> Image | None:
         """The newest picture."""
-        return None if self._running is None else self._running.jpeg(LIVE)
+        return None if self._running is None else self._running.newest
 
     def shown(self) -> ShownCamera:
         """In the form for browsers."""
@@ -101,6 +106,8 @@ class Previews:
 
     def __init__(self) -> None:
         self._open: dict[str, Preview] = {}
+        self._watch: BoardWatch | None = None
+        self._watched: tuple[str, ...] = ()
         self.looked_s = 0.0
         """When the page last asked for a picture."""
 
@@ -108,6 +115,11 @@ class Previews:
     def on(self) -> bool:
         """Whether they are open."""
         return bool(self._open)
+
+    @property
+    def watching(self) -> bool:
+        """Whether the board is looked for."""
+        return self._watch is not None and not self._watch.is_over
 
     def open(self, cameras: Sequence[FoundCamera]) -> None:
         """Open all of them."""
@@ -118,6 +130,7 @@ class Previews:
 
     def close(self) -> None:
         """Close all: only one program can hold a camera."""
+        self.unwatch()
         for preview in self._open.values():
             preview.close()
         self._open = {}
@@ -125,8 +138,32 @@ class Previews:
     def jpeg(self, camera: str) -> bytes | None:
         """The newest picture of a camera; from any thread."""
         self.looked_s = time.monotonic()
-        preview = self._open.get(camera)
-        return None if preview is None else preview.jpeg()
+        preview, watch = self._open.get(camera), self._watch
+        picture = None if preview is None else preview.newest
+        if picture is not None and watch is not None and camera in self._watched:
+            picture = watch.shown(self._watched.index(camera), picture)
+        return None if picture is None else jpeg_of(picture)
+
+    def watch(self, cameras: Sequence[FoundCamera], folder: Path) -> None:
+        """Look for the board in these cameras, which are opened, from now on.
+
+        Args:
+            cameras: In the order of their numbers.
+            folder: Gets their pictures as videos.
+        """
+        self.unwatch()
+        self.open(cameras)
+        self._watched = tuple(found.camera for found in cameras)
+        newest = [partial(_newest, self._open[camera]) for camera in self._watched]
+        self._watch = BoardWatch(newest, folder)
+
+    def unwatch(self) -> tuple[Path, ...]:
+        """Look for it no longer; returns the videos of what it showed."""
+        watch, self._watch = self._watch, None
+        if watch is None:
+            return ()
+        watch.close()
+        return tuple(path for path in watch.videos if path.is_file())
 
     def shown(self, cameras: Sequence[FoundCamera]) -> Cameras:
         """In the form for browsers."""
@@ -136,4 +173,18 @@ class Previews:
             else ShownCamera(each.camera, each.name, each.where, "", "", "")
             for each in cameras
         ]
-        return Cameras(self.on, rows, "" if rows else no_camera("tritrack start"))
+        says = "" if rows else no_camera("tritrack start")
+        return Cameras(self.on, rows, says, self._watch is not None, self._board_words())
+
+    def _board_words(self) -> tuple[str, ...]:
+        watch = self._watch
+        if watch is None:
+            return ()
+        if watch.fault or watch.progress is None:
+            return (watch.fault or "The cameras give their first pictures ...",)
+        names = [f"Camera {n}" for n in range(1, len(self._watched) + 1)]
+        return tuple(words_of(watch.progress, names))
+
+
+def _newest(preview: Preview) -> Image | None:
+    return preview.newest

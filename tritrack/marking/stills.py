@@ -67,10 +67,15 @@ class Running:
         if not self._came.wait(FIRST_S):
             self.fault = DecoderDied(source, 0, f"it gave no picture for {FIRST_S:g} s")
 
+    @property
+    def newest(self) -> Image | None:
+        """The newest picture, None before the first; from any thread."""
+        return self._newest
+
     def jpeg(self, place: int) -> bytes | None:
         """The newest picture, the only one."""
         newest = self._newest
-        return None if newest is None or place != LIVE else _jpeg(newest)
+        return None if newest is None or place != LIVE else jpeg_of(newest)
 
     def close(self) -> None:
         """Close the camera."""
@@ -165,7 +170,7 @@ def _film(decoder: Decoder, view: ViewSource, size: Size, frames: int, console: 
     with bar(console) as progress:
         taken = islice(decoder.frames(view.source, size, Wanted(every)), MOST_STILLS)
         told = progress.track(taken, total=math.ceil(frames / every) or None, description="reading")
-        stills = [(decoded.index, _jpeg(decoded.picture)) for decoded in told]
+        stills = [(decoded.index, jpeg_of(decoded.picture)) for decoded in told]
     return Film(tuple(jpeg for _, jpeg in stills), tuple(index for index, _ in stills))
 
 
@@ -177,6 +182,7 @@ def _pictures(number: int, view: Film | Running) -> Pictures:
     return Pictures(number, name, addresses, view.frames, runs=False)
 
 
-def _jpeg(picture: Image) -> bytes:
+def jpeg_of(picture: Image) -> bytes:
+    """A picture for browsers."""
     _, encoded = cv2.imencode(".jpg", np.asarray(picture), [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
     return encoded.tobytes()

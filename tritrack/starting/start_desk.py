@@ -1,5 +1,6 @@
 """What the start page shows and what its users' wishes do."""
 
+import shutil
 import time
 from collections.abc import Callable
 from functools import partial
@@ -21,6 +22,8 @@ from animator.start.wishes import (
     Live,
     Look,
     Raise,
+    Watch,
+    Watched,
     WishError,
     Work,
 )
@@ -36,7 +39,7 @@ from tritrack.starting.start_files import clean, delete_run, place, remove, serv
 from tritrack.starting.start_lists import StartLists
 from tritrack.starting.tray import Facts, facts_of, late_by_sound, shown_tray
 from tritrack.starting.uploads import FOLDER, MOST_BYTES, Upload, UploadRefused, Uploads
-from tritrack.starting.wish_plans import Starting, There, plan_of
+from tritrack.starting.wish_plans import Starting, There, plan_of, refuse_cameras
 
 JOBS_S: Final = 0.3
 """Interval at which jobs are shown, seconds."""
@@ -73,6 +76,8 @@ class StartDesk:
         self._aside = Aside()
         self._lists = StartLists(self._runs, given.videos, self._aside)
         self._jobs_due_s = 0.0
+        self._board = self._runs / FOLDER / "board"
+        """What the board shows to the cameras."""
         clean(self._runs, self._queue.uses)
 
     @property
@@ -140,6 +145,11 @@ class StartDesk:
             self._queue.cancel(wish.job)
         elif isinstance(wish, Look):
             self._lists.look(wish.on)
+        elif isinstance(wish, Watch):
+            refuse_cameras(wish.cameras, self._lists.sources, least=0)
+            self._lists.watch((), self._board)
+            shutil.rmtree(self._board, ignore_errors=True)
+            self._lists.watch(wish.cameras, self._board)
         elif isinstance(wish, Delete):
             self._delete(wish, page)
         else:
@@ -194,8 +204,10 @@ class StartDesk:
         there = There(
             self._runs, self._uploads.files, self._facts, self._lists.sources, self._queue.names
         )
+        if isinstance(wish, Watched):
+            there = there._replace(board=self._lists.watch((), self._board))
         plan = plan_of(wish, there)
-        if isinstance(wish, Live):
+        if isinstance(wish, Live | Watched):
             self._lists.look(False)  # only one program can hold a camera
         place(plan)
         job = self._queue.add(plan)

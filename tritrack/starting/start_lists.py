@@ -62,6 +62,15 @@ class StartLists:
         else:
             self._previews.close()
 
+    def watch(self, cameras: Sequence[str], folder: Path) -> tuple[Path, ...]:
+        """Look for the board in these cameras, in none: no longer; returns what was seen of it."""
+        self.hurry()
+        there = {each.camera: each for each in self._cameras}
+        videos = self._previews.unwatch()
+        if cameras:
+            self._previews.watch([there[camera] for camera in cameras], folder)
+        return videos
+
     def turn(self, page: StartPage) -> None:
         """Show what has changed, every other second."""
         now_s = time.monotonic()
@@ -73,7 +82,11 @@ class StartLists:
         pictured = {name: self._drawn[name] for name in self.pictures}
         page.show(shown_runs(runs, pictured))
         page.show(shown_calibrations(self._runs))
-        if self._previews.on and now_s - self._previews.looked_s > PREVIEW_S:
+        if (
+            self._previews.on
+            and not self._previews.watching
+            and now_s - self._previews.looked_s > PREVIEW_S
+        ):
             self._previews.close()
         if not self._previews.on:
             self._cameras = cameras_of(self._videos)

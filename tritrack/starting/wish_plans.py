@@ -6,7 +6,17 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
-from animator.start.wishes import Board, Compare, Demo, Export, Live, Open, Report, Work
+from animator.start.wishes import (
+    Board,
+    Compare,
+    Demo,
+    Export,
+    Live,
+    Open,
+    Report,
+    Watched,
+    Work,
+)
 from common.bus.messages import MOST_VIEWS
 from common.video.pictures import Source
 from runtime.live.free_ports import free_port
@@ -33,7 +43,7 @@ from tritrack.starting.start_files import SETTINGS
 from tritrack.starting.tray import Facts, shown_tray
 from tritrack.starting.uploads import Upload
 
-Starting = Work | Board | Demo | Open | Export | Report | Compare | Live
+Starting = Work | Board | Demo | Open | Export | Report | Compare | Live | Watched
 """A wish that a command follows from."""
 
 
@@ -48,6 +58,8 @@ class There(NamedTuple):
     """Of the cameras, by their ids."""
     taken: frozenset[str]
     """Names of runs that jobs write."""
+    board: tuple[Path, ...] = ()
+    """Videos of the cameras before which the board was held."""
 
     @property
     def known(self) -> Known:
@@ -70,6 +82,11 @@ def plan_of(wish: Starting, there: There) -> Plan:
         return _plan_of_files(wish, there)
     if isinstance(wish, Live):
         return _plan_of_cameras(wish, there)
+    if isinstance(wish, Watched):
+        if not there.board:
+            raise PlanError("no board was shown yet: watch it, and hold it before the cameras")
+        work = Work("board", f"board_{time.strftime('%Y-%m-%d_%H%M')}", square_mm=wish.square_mm)
+        return planned(work, [Dropped(path) for path in there.board], there.known)
     if isinstance(wish, Board):
         (there.runs / CALIBRATIONS).mkdir(exist_ok=True)
         return board_plan(there.runs, wish.paper)
@@ -81,6 +98,23 @@ def plan_of(wish: Starting, there: There) -> Plan:
     if isinstance(wish, Export) and wish.to not in OWN_NAMES:
         raise PlanError(f"there is no format {wish.to!r}: choose one of the list")
     return run_plan(wish, there.runs, free_port())
+
+
+def refuse_cameras(cameras: Sequence[str], sources: Mapping[str, Source], least: int = 1) -> None:
+    """Refuse a choice of cameras that cannot be.
+
+    Args:
+        cameras: Their ids.
+        sources: Of those that are there.
+        least: Fewest that must be chosen.
+
+    Raises:
+        PlanError: When there are too few, one twice, too many, or one that is not there.
+    """
+    if len(cameras) < least or len({*cameras}) < len(cameras):
+        raise PlanError("choose one camera or more")
+    if len(cameras) > MOST_VIEWS or not {*cameras} <= {*sources}:
+        raise PlanError(f"{MOST_VIEWS} cameras at most, of those that are there: look again")
 
 
 def _plan_of_files(wish: Work, there: There) -> Plan:
@@ -96,10 +130,7 @@ def _plan_of_files(wish: Work, there: There) -> Plan:
 
 def _plan_of_cameras(wish: Live, there: There) -> Plan:
     known, runs = there.known, there.runs
-    if not wish.cameras or len(set(wish.cameras)) < len(wish.cameras):
-        raise PlanError("choose one camera or more")
-    if len(wish.cameras) > MOST_VIEWS or not {*wish.cameras} <= {*there.sources}:
-        raise PlanError(f"{MOST_VIEWS} cameras at most, of those that are there: look again")
+    refuse_cameras(wish.cameras, there.sources)
     if wish.calibration and wish.calibration not in known.calibrations:
         raise PlanError(f"there is no calibration {wish.calibration!r}: choose one of the list")
     name = free_name(time.strftime("live_%Y-%m-%d_%H%M"), known.names)

@@ -11,11 +11,18 @@ export class Cameras {
     this.on = false;
     at("look").addEventListener("click", () => link.say({ type: "look", on: !this.on }));
     at("live").addEventListener("click", () => link.say({ type: "live", cameras: this.chosen, calibration: at("live-calibration").value, pictures: at("live-pictures").checked }));
+    at("watch").addEventListener("click", () => link.say({ type: "watch", cameras: this.watching ? [] : this.chosen }));
+    at("watched").addEventListener("click", () => link.say({ type: "watched", square_mm: at("live-square").value === "" ? null : Number(at("live-square").value) }));
     setInterval(() => this.renew(), EVERY_MS);
   }
 
-  show({ on, cameras, says }) {
+  show({ on, cameras, says, watching, board }) {
     this.on = on;
+    this.watching = watching;
+    at("watch").ariaPressed = watching;
+    at("watch").textContent = watching ? "Watch the board no longer" : "Watch the board";
+    at("watched").hidden = at("square-field").hidden = !watching;
+    fill(at("board-says"), board, (_, n) => n, (line) => element("li", {}, line));
     this.chosen = this.chosen.filter((one) => cameras.some(({ camera }) => camera === one));
     at("cameras-say").textContent = says;
     at("cameras-say").hidden = says === "";
@@ -28,6 +35,7 @@ export class Cameras {
 
   draw() {
     at("live").disabled = this.chosen.length === 0;
+    at("watch").disabled = this.chosen.length === 0 && !this.watching;
     at("live").className = this.chosen.length ? "main-task" : "";
     at("live").textContent = this.chosen.length > 1 ? `Track live with ${this.chosen.length} cameras` : "Track live";
     fill(at("cameras"), this.cameras.map((each) => ({ ...each, number: this.chosen.indexOf(each.camera) + 1, on: this.on })), ({ camera }) => camera, (each) => this.row(each));

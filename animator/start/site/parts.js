@@ -23,12 +23,12 @@ export function button(id, text, act, properties = {}) {
 export function fill(list, items, keyOf, make) {
   const before = new Map([...list.children].map((child) => [child.dataset.key, child]));
   const focused = document.activeElement?.id;
-  const now = items.map((item) => {
+  const now = items.map((item, n) => {
     const said = JSON.stringify(item);
-    const old = before.get(String(keyOf(item)));
+    const old = before.get(String(keyOf(item, n)));
     if (old?.said === said) return old;
     const made = make(item, old);
-    made.dataset.key = keyOf(item);
+    made.dataset.key = keyOf(item, n);
     made.said = said;
     return made;
   });

@@ -11,7 +11,7 @@ import { Uploader } from "./upload.js";
 
 const AGAIN_MS = 500; // between two tries to reach the server
 
-const BEGIN = new Set(["work", "live", "demo", "board", "open", "export", "report", "compare"]); // wishes that a job follows from
+const BEGIN = new Set(["work", "live", "demo", "board", "open", "export", "report", "compare", "watched"]); // wishes that a job follows from
 
 const link = {
   send(said) { if (link.socket?.readyState === WebSocket.OPEN) link.socket.send(said); },
