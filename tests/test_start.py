@@ -268,7 +268,7 @@ def test_what_is_dropped_is_seen_at_once_and_can_be_taken_away(
         "dispatchEvent(Object.assign(new Event('drop', {cancelable: true}), {dataTransfer: data}))}"
     )
     assert looking.until("!!document.querySelector('#files .bad')")
-    assert "b_.avi" in words(looking, "#files")
+    assert "<b>.avi" in words(looking, "#files"), "as text"
     assert not looking.ask("!!document.querySelector('#do-single')")
     click(looking, "#files button[id^=away]")
     assert looking.until("!document.querySelector('#files li')")
