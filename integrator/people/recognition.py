@@ -20,7 +20,7 @@ FIRST: Final = 1
 """The first person's number; 0 is that of a run that follows one person."""
 BORN_S: Final = 1.0 / 3.0
 """How long two views must show a new person before they get a number, seconds."""
-ALONE_BORN_S: Final = 1.0
+ALONE_BORN_S: Final = 1.0 / 3.0
 """The same where one view of several shows them: another may see them soon."""
 
 

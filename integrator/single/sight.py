@@ -50,6 +50,8 @@ class Sight(NamedTuple):
     annotations: Annotations
     number: ViewerNumber = 1
     """Index of its camera in the run's rig."""
+    on_floor: bool = False
+    """Whether the rig's floor is known."""
 
     @property
     def camera(self) -> Camera:

@@ -10,7 +10,14 @@ from common.rig.camera import TOWARDS, arrays_of, project
 from integrator.landmarks import landmark_fusion
 from integrator.proposal.pose_proposal import Memory
 from integrator.rig.undistortion import undistorted_camera
-from integrator.single import calm_depth, depth_signs, lifted_stick, lone_proposal, reflection
+from integrator.single import (
+    calm_depth,
+    depth_signs,
+    floor_depth,
+    lifted_stick,
+    lone_proposal,
+    reflection,
+)
 from integrator.single.reflection import Front
 from integrator.single.sight import Hypothesis, Sight
 
@@ -37,6 +44,8 @@ class Alone(NamedTuple):
     """True: a stick body is requested for the next instant, because the proposal fits badly."""
     depth: calm_depth.Memory | None = None
     """Memory of the joints' distances."""
+    place: floor_depth.Memory | None = None
+    """Memory of the whole body's."""
 
 
 class Found(NamedTuple):
@@ -64,7 +73,8 @@ def begun(sight: Sight, joints_m: NDArray[np.float64] | None, other: Alone | Non
         landmarks = other.landmarks
         yaw = reflection.yaw_deg(sight.camera, joints_m)
         front = None if other.front is None else reflection.as_known(other.front, yaw)
-    return Alone(sight.number, 0.0, nothing, front, signs, landmarks, stick=False)
+    place = floor_depth.known(undistorted_camera(sight.camera), joints_m)
+    return Alone(sight.number, 0.0, nothing, front, signs, landmarks, stick=False, place=place)
 
 
 def step(memory: Memory | None, alone: Alone, sight: Sight) -> Found:
@@ -78,6 +88,15 @@ def step(memory: Memory | None, alone: Alone, sight: Sight) -> Found:
     if sight.method.stick_lifting:
         signs, lifted = lifted_stick.step(alone.signs, sight)
         return _found(lifted, memory, alone._replace(signs=signs))
+    found = _proposed_or_lifted(memory, alone, sight)
+    if not sight.on_floor:
+        return found
+    place, body = floor_depth.step(alone.place, sight, found.body)
+    return found._replace(body=body, alone=found.alone._replace(place=place))
+
+
+def _proposed_or_lifted(memory: Memory | None, alone: Alone, sight: Sight) -> Found:
+    """The proposed body, or the lifted stick body where it fits better."""
     before = lone_proposal.Before(memory, alone.front, alone.landmarks, alone.depth)
     seen = lone_proposal.step(before, sight)
     body, suffices = seen.found, seen.agrees and seen.found.score >= GOOD
