@@ -117,6 +117,29 @@ def test_a_view_that_does_not_know_who_it_shows_is_asked_by_sight_lines() -> Non
     assert owned_now([[FIRST[0]], [SECOND[1]]], [moved]).known == ((0, -1),)
 
 
+def test_a_view_that_shows_one_of_two_is_told_by_the_others_sight_lines_who_it_is() -> None:
+    """View 1 shows the second alone, with the number that it gave the first, and nearer to where
+    the first is expected: its sight lines meet those of view 2 that show the second."""
+    lives = [
+        life(1, (RIGHT_M[0] - 0.15, LEFT_M[1]))._replace(tracks=(1, 0)),
+        life(2, (RIGHT_M[0] + 0.1, RIGHT_M[1]))._replace(tracks=(9, 1)),
+    ]
+    people = [(SECOND[0],), BOTH[1]]
+    own, theirs = (cost_of(RIG.cameras[0], 0, each, SECOND[0], 1.0) for each in lives)
+    assert own < theirs
+    assert owned_now(people, lives).known == ((-1, 0), (0, 1))
+    assert owned(RIG, people, lives, 1.0, ()).known[0] == (0, 0), "no gap is known"
+
+
+def test_two_views_that_never_meet_are_not_of_one_person_however_near_they_are() -> None:
+    """In each view the observation is where the one known person is expected."""
+    known = life(1, (RIGHT_M[0], LEFT_M[1]))
+    people = [(SECOND[0],), (FIRST[1],)]
+    costs = [cost_of(RIG.cameras[n], n, known, people[n][0], 1.0) for n in range(2)]
+    assert max(costs) < 0.5
+    assert sorted(owned_now(people, [known]).known[0]) == [-1, 0]
+
+
 def test_who_has_anothers_observation_is_found_after_a_third_of_a_second() -> None:
     crossed = [(0, 1), (1, 0)]
     assert mistaken(BOTH, crossed, gaps_of(BOTH, SURE_AFTER - 1)) == []

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from itertools import combinations, permutations, product, starmap
+from operator import itemgetter
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -25,6 +26,13 @@ AMONG: Final = 0.5
 """Share of the next best gap below which that of two observations is clearly one person's."""
 WRONG_M: Final = 0.02
 """By how much another's gap must be smaller for two observations not to be of one person."""
+GAP_COST: Final = 0.5
+"""Cost of two observations of one person whose sight lines are MEETS_M apart; it grows with the
+square."""
+FARTHEST: Final = 2.0
+"""In that unit, the distance from which on it grows no more."""
+ROUNDS: Final = 3
+"""How often views are asked whom they show, each knowing what the others said."""
 SURE_AFTER: Final = 5
 """Number of instants after which such a mean contradicts what was taken for one person."""
 
@@ -59,14 +67,14 @@ def owned(
         now_s: Capture time.
         gaps: With this instant.
     """
-    known = [[-1] * len(people) for _ in lives]
+    costs = []
     for view, camera in enumerate(rig.cameras):
-        costs = np.array(
+        own = np.array(
             [[cost_of(camera, view, life, each, now_s) for each in people[view]] for life in lives]
         ).reshape(len(lives), len(people[view]))
-        costs += HIDDEN * hidden_shares(camera, [life.expected_m(now_s) for life in lives])[:, None]
-        for row, column in _assigned(costs):
-            known[row][view] = column
+        hidden = hidden_shares(camera, [life.expected_m(now_s) for life in lives])
+        costs.append(own + HIDDEN * hidden[:, None])
+    known = _agreed(people, costs, Apart(people, gaps))
     _attach(people, known, gaps)
     taken = {(view, own[view]) for own in known for view in range(len(people))}
     unknown = [
@@ -77,6 +85,58 @@ def owned(
     ]
     groups = _grouped(people, unknown, gaps)
     return Owned(tuple(map(tuple, known)), groups)
+
+
+def _agreed(people: People, costs: Sequence[np.ndarray], apart: Apart) -> list[list[int]]:
+    """For each person, by view, the index of their observation, so that each view's are cheap and
+    the sight lines of all views meet; -1: none.
+
+    A view that shows one of two people may take them for the other: alone it does not know. So
+    views are asked in turn, each with what the others say, first by each of them once.
+
+    Args:
+        people: Of each view.
+        costs: Of each view, (people, observations).
+        apart: Gaps.
+    """
+    views = range(len(people))
+    tried = [
+        _asked_in_turn(people, costs, apart, [*views[first:], *views[:first]]) for first in views
+    ]
+    return min(tried, key=itemgetter(0))[1]
+
+
+def _asked_in_turn(
+    people: People, costs: Sequence[np.ndarray], apart: Apart, order: Sequence[int]
+) -> tuple[float, list[list[int]]]:
+    """Whom the views show where they are asked in an order, after the sum of the costs; an
+    observation of no person costs 1."""
+    known = [[-1] * len(people) for _ in costs[0]]
+    for _ in range(ROUNDS):
+        before, total = [list(own) for own in known], 0.0
+        for view in order:
+            own_costs = costs[view] + _clashes(people, known, apart, view)
+            pairs = dict(_assigned(own_costs))
+            total += len(people[view]) + sum(own_costs[pair] - 1.0 for pair in pairs.items())
+            for row, own in enumerate(known):
+                own[view] = pairs.get(row, -1)
+        if known == before:
+            break
+    return total, known
+
+
+def _clashes(people: People, known: Sequence[Sequence[int]], apart: Apart, view: int) -> np.ndarray:
+    """Cost of a view's observations (people, observations) beside those of other views."""
+    indices = range(len(people[view]))
+    costs = [[_clash(apart, own, (view, index)) for index in indices] for own in known]
+    return np.array(costs).reshape(len(known), len(indices))
+
+
+def _clash(apart: Apart, own: Sequence[int], one: Place) -> float:
+    """Cost of an observation beside those of other views that are held to be of one person."""
+    gaps = [apart.gap(each, one) for each in _places(own) if each[0] != one[0]]
+    far = [0.5 * (gap.mean_m + gap.last_m) / MEETS_M for gap in gaps if gap is not None]
+    return GAP_COST * min(max(far, default=0.0), FARTHEST) ** 2
 
 
 def doubles(

@@ -19,9 +19,7 @@ MOST: Final = 6
 FIRST: Final = 1
 """The first person's number; 0 is that of a run that follows one person."""
 BORN_S: Final = 1.0 / 3.0
-"""How long two views must show a new person before they get a number, seconds."""
-ALONE_BORN_S: Final = 1.0 / 3.0
-"""The same where one view of several shows them: another may see them soon."""
+"""How long views must show a new person before they get a number, seconds."""
 
 
 class Coming(NamedTuple):
@@ -90,10 +88,7 @@ def recognised(state: State, instant: Instant, now_s: float) -> tuple[State, lis
 
 def _wait_s(group: Group, state: State) -> float:
     """How long a new person must be shown: not at all where no person is known and it is clear."""
-    if group.is_clear and not state.lives:
-        return 0.0
-    shown = sum(index >= 0 for index in group.indices)
-    return BORN_S if shown > 1 or len(group.indices) == 1 else ALONE_BORN_S
+    return 0.0 if group.is_clear and not state.lives else BORN_S
 
 
 def born(room: merge_state.State, number: int, tracks: tuple[int, ...], now_s: float) -> Life:

@@ -30,6 +30,8 @@ class Gap(NamedTuple):
     mean_m: float
     """Running mean of the gap between their sight lines, and of what their colours differ."""
     instants: int
+    last_m: float = 0.0
+    """Of the last instant that told."""
 
 
 class Apart:
@@ -70,7 +72,7 @@ def with_instant(gaps: Sequence[Gap], rig: Rig, people: People) -> tuple[Gap, ..
             colours = (people[view][index].colours for view, index in (one, other))
             now_m = apart_m + GAP_COLOUR_M * colour_distance(*colours)
             count = min(known.instants + 1, INSTANTS)
-            known = Gap(tracks, known.mean_m + (now_m - known.mean_m) / count, count)
+            known = Gap(tracks, known.mean_m + (now_m - known.mean_m) / count, count, now_m)
         if known.instants:
             after.append(known)
     return tuple(after)

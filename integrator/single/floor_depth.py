@@ -1,4 +1,4 @@
-"""Depth of the whole body in a single view: by feet on the floor, and no faster than people walk."""
+"""Depth of a whole body in a single view: by feet on the floor, and no faster than people walk."""
 
 from collections.abc import Sequence
 from typing import Final, NamedTuple
