@@ -112,4 +112,12 @@ def test_a_depth_that_stays_elsewhere_is_believed_within_a_second() -> None:
 def test_a_floor_that_is_assumed_does_not_count(on_floor: bool) -> None:
     sight = sight_of(landmarks(STANDING_M), on_floor=on_floor)
     begun = single_view.begun(sight, STANDING_M)
-    assert (single_view.step(None, begun, sight).alone.place != begun.place) == on_floor
+    assert (single_view.step(None, begun, sight).alone.place is not begun.place) == on_floor
+
+
+def test_who_comes_nearer_is_followed_at_their_speed() -> None:
+    """1.5 metres a second, without feet, as of who is before a desk."""
+    memory = known(CAMERA, STANDING_M)
+    for n in range(15):
+        memory, _ = step(memory, sight_of(None), away(-0.1 * n))
+    assert memory.depth_m - DEPTH_M == pytest.approx(-1.4, abs=0.06)

@@ -1,6 +1,5 @@
 """Depth of a whole body in a single view: by feet on the floor, and no faster than people walk."""
 
-from collections.abc import Sequence
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -21,8 +20,10 @@ LIFTED: Final = 0.3
 beyond its place."""
 KNOWN_M: Final = 0.05
 """The same of a body that two views showed in the instant before."""
-WALK_M: Final = 0.3
-"""By how much a depth changes in a second, as a random walk: .08 m in a fifteenth of it."""
+WALK_M_S: Final = 0.8
+"""Standard deviation of the speed towards or from the camera, of whom nothing is known."""
+STARTS_M_S2: Final = 4.0
+"""The same of its change in a second: people stop within a step."""
 STRIDE_M: Final = 0.9
 """Distance of two feet along the view above which one is lifted."""
 ANKLE: Final = 0.047
@@ -36,17 +37,30 @@ PELVIS: Final = JOINT_NAMES.index("pelvis")
 PLACE: Final = [POSE_INDEX[name] for name in ("x", "y", "z")]
 
 
-class Memory(NamedTuple):
-    """A depth of the pelvis, and how sure it is."""
+class Depth(NamedTuple):
+    """A depth of the pelvis, from the camera's plane, along its axis, and how sure it is."""
 
     depth_m: float
-    """From the camera's plane, along its axis."""
     variance_m2: float
+
+
+class Memory(NamedTuple):
+    """The depth after an instant."""
+
+    state: Vector
+    """(2,) the depth, metres, and its speed, metres a second."""
+    P: NDArray[np.float64]
+    """(2, 2) their covariance."""
+
+    @property
+    def depth_m(self) -> float:
+        """The depth alone."""
+        return float(self.state[0])
 
 
 def known(camera: Camera, joints_m: NDArray[np.float64]) -> Memory:
     """The memory of a body (15, 3) that two views showed in the instant before."""
-    return Memory(_depth_m(camera, joints_m[PELVIS]), KNOWN_M**2)
+    return _begun(Depth(_depth_m(camera, joints_m[PELVIS]), KNOWN_M**2))
 
 
 def step(memory: Memory | None, sight: Sight, body: Hypothesis) -> tuple[Memory, Hypothesis]:
@@ -63,10 +77,10 @@ def step(memory: Memory | None, sight: Sight, body: Hypothesis) -> tuple[Memory,
     camera = undistorted_camera(sight.camera)
     proposed_m = _depth_m(camera, body.joints_m[PELVIS])
     feet = feet_depth(camera, sight.person.landmarks, ANKLE * sight.stature_m)
-    shown = [Memory(proposed_m, PROPOSED_M**2)] + ([] if feet is None else [feet])
-    if memory is not None:
-        memory = memory._replace(variance_m2=memory.variance_m2 + WALK_M**2 * sight.dt_s)
-    after = _weighed(memory, shown)
+    shown = [Depth(proposed_m, PROPOSED_M**2)] + ([] if feet is None else [feet])
+    after = _begun(shown.pop(0)) if memory is None else _foreseen(memory, sight.dt_s)
+    for each in shown:
+        after = _with(after, each)
     off_m = body.joints_m[PELVIS] - centre(camera)
     by_m = off_m * (after.depth_m / proposed_m - 1.0)
     pose = body.pose.copy()
@@ -74,7 +88,7 @@ def step(memory: Memory | None, sight: Sight, body: Hypothesis) -> tuple[Memory,
     return after, body._replace(joints_m=body.joints_m + by_m, pose=pose)
 
 
-def feet_depth(camera: Camera, shown: Landmarks | None, ankle_m: float) -> Memory | None:
+def feet_depth(camera: Camera, shown: Landmarks | None, ankle_m: float) -> Depth | None:
     """Depth of the middle of two feet on the floor; None where both are not seen there.
 
     Args:
@@ -93,22 +107,29 @@ def feet_depth(camera: Camera, shown: Landmarks | None, ankle_m: float) -> Memor
     apart_m = abs(depths_m[0] - depths_m[1])
     if min(depths_m) <= 0.0 or apart_m > STRIDE_M:
         return None
-    return Memory(float(np.mean(depths_m)), FEET_M**2 + (LIFTED * apart_m) ** 2)
+    return Depth(float(np.mean(depths_m)), FEET_M**2 + (LIFTED * apart_m) ** 2)
 
 
-def _weighed(memory: Memory | None, shown: Sequence[Memory]) -> Memory:
-    """The mean of depths, weighed by their variances; one far from what is foreseen makes both
-    uncertain."""
-    for depth_m, variance_m2 in shown:
-        if memory is None:
-            memory = Memory(depth_m, variance_m2)
-            continue
-        off_m, both_m2 = depth_m - memory.depth_m, memory.variance_m2 + variance_m2
-        far_m2 = max(0.0, (off_m / SURPRISE) ** 2 - both_m2)
-        gain = (memory.variance_m2 + 0.5 * far_m2) / (both_m2 + far_m2)
-        memory = Memory(memory.depth_m + gain * off_m, gain * (variance_m2 + 0.5 * far_m2))
-    assert memory is not None  # a body is always proposed
-    return memory
+def _begun(first: Depth) -> Memory:
+    return Memory(np.array((first.depth_m, 0.0)), np.diag((first.variance_m2, WALK_M_S**2)))
+
+
+def _foreseen(memory: Memory, dt_s: float) -> Memory:
+    """The depth after some time at its speed."""
+    onward = np.array(((1.0, dt_s), (0.0, 1.0)))
+    noise = STARTS_M_S2 * np.array((0.5 * dt_s**2, dt_s))
+    P = onward @ memory.P @ onward.T + np.outer(noise, noise)
+    return Memory(onward @ memory.state, P)
+
+
+def _with(memory: Memory, shown: Depth) -> Memory:
+    """The depth with what an instant shows; one far from what is foreseen makes both uncertain."""
+    off_m, both_m2 = shown.depth_m - memory.depth_m, memory.P[0, 0] + shown.variance_m2
+    far_m2 = max(0.0, (off_m / SURPRISE) ** 2 - both_m2)
+    P = memory.P.copy()
+    P[0, 0] += 0.5 * far_m2
+    gain = P[:, 0] / (both_m2 + far_m2)
+    return Memory(memory.state + gain * off_m, P - np.outer(gain, P[0]))
 
 
 def _depth_m(camera: Camera, place_m: Vector) -> float:
