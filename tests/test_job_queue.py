@@ -139,6 +139,17 @@ def test_a_job_ends_in_order_when_its_page_is_killed(tmp_path: Path) -> None:
     assert end.read_text() == "in order"
 
 
+def test_what_a_job_made_can_be_opened_once_it_is_there(queue: JobQueue, tmp_path: Path) -> None:
+    made = tmp_path / "a run ü/report.html"
+    job = ended(queue, queue.add(Plan("reports", ("pass",), makes=made)))
+    assert job.shown().made == ""
+    made.parent.mkdir()
+    made.write_text("all")
+    assert job.shown().made == "run/a%20run%20%C3%BC/report.html"
+    failed = ended(queue, queue.add(Plan("fails", ("exit(2)",), makes=made)))
+    assert failed.shown().made == "", "that is of before"
+
+
 def test_closing_ends_what_runs(queue: JobQueue) -> None:
     job = queue.add(SLEEPS)
     queue.turn()

@@ -165,8 +165,8 @@ def test_a_dropped_video_becomes_a_run_that_is_exported_and_deleted(
         assert len(rows) == len(poses["frame"]) + 1
 
     click(looking, "#retouch-walk")
-    assert looking.until("!!document.querySelector('#jobs a.button')", WORK_S)
-    with urlopen(looking.ask("document.querySelector('#jobs a.button').href")) as page:
+    assert looking.until("!!document.querySelector('#jobs a[id^=page]')", WORK_S)
+    with urlopen(looking.ask("document.querySelector('#jobs a[id^=page]').href")) as page:
         assert page.status == 200
     click(looking, "#jobs button")
     assert job_ended(looking, 3) == "done", words(looking, "#jobs")
@@ -349,14 +349,14 @@ def test_cameras_are_seen_chosen_and_tracked_live(looking: Looking, started: Sta
     click(looking, "#use-file0")
     assert looking.until("document.querySelector('#live').innerText.includes('2 cameras')")
     click(looking, "#live")
-    assert looking.until("!!document.querySelector('#jobs a.button')", WORK_S), words(
+    assert looking.until("!!document.querySelector('#jobs a[id^=page]')", WORK_S), words(
         looking, "#jobs"
     )
     assert looking.until("!document.querySelector('#cameras img')"), "no camera is held twice"
     (settings,) = (started.runs / ".settings").iterdir()
     first = config_file.load(settings).cameras["cam1"].source
     assert first.endswith("cam2.avi"), "the camera that was chosen first is camera 1"
-    page = looking.ask("document.querySelector('#jobs a.button').href")
+    page = looking.ask("document.querySelector('#jobs a[id^=page]').href")
     looking.tab.call("Page.navigate", url=page)
     assert looking.until("document.body?.dataset.drawn", WORK_S)
     looking.tab.call("Page.navigate", url=started.address)

@@ -1,16 +1,24 @@
 """What is behind the start page, without a server: it goes on whatever fails around it."""
 
 import sys
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
+from urllib.request import urlopen
 
 import pytest
+from spoiling import film_of, write_video
 from waiting import until
 
-from animator.start.wishes import Again, Delete, Wish
+from animator.start.wishes import Again, Compare, Delete, Demo, Report, Wish
 from tritrack.starting.job_plan import Plan, kept_calibration
-from tritrack.starting.job_queue import JobQueue
+from tritrack.starting.job_queue import Job, JobQueue
 from tritrack.starting.start_desk import Given, StartDesk
+
+FRAMES = {"one": 45, "two": 48}
+"""Lengths of the videos that jobs work on."""
+WORK_S = 400.0
+"""For what a busy machine works on."""
 
 
 class Page:
@@ -85,6 +93,53 @@ def test_the_videos_of_a_job_that_failed_can_be_had_again(tmp_path: Path) -> Non
     assert not copied.parent.exists()
     assert not job.shown().again
     desk.close()
+
+
+@pytest.mark.slow
+def test_the_pages_own_commands_run(tmp_path: Path, clip: Path) -> None:
+    """Report, comparison, demo and recording as processes, of a run of one second."""
+    runs, queue = tmp_path / "runs", JobQueue()
+    for name in ("one", "two"):
+        write_video(tmp_path / f"{name}.avi", film_of(clip / "cam1.avi")[: FRAMES[name]])
+        done(queue, Plan(name, ("single", str(tmp_path / f"{name}.avi"), "--out", str(runs))))
+    desk = StartDesk(Given(runs), queue)
+    desk.turn(Page(Report("one"), Compare("one", "two"), Demo()))  # type: ignore[arg-type]
+    jobs = [job for job in queue.jobs if not job.is_over]
+    assert [job.plan.arguments[0] for job in jobs] == ["report", "compare", "demo"]
+    seen = set[str]()
+
+    def are_over() -> bool:
+        desk.turn(Page())  # type: ignore[arg-type]
+        seen.update(job.shown().bus for job in jobs)
+        if page_of(jobs[2]):
+            with suppress(OSError), urlopen(page_of(jobs[2])):
+                queue.cancel(jobs[2].number)
+        return all(job.is_over for job in jobs)
+
+    assert until(are_over, WORK_S), [job.progress.lines[-3:] for job in jobs]
+    assert [job.state for job in jobs] == ["done"] * 3, [job.told for job in jobs]
+    assert [job.shown().made for job in jobs] == [
+        "run/one/report.html",
+        "run/one/compare.html",
+        "",
+    ]
+    assert any(bus.startswith("tcp/127.0.0.1:") for bus in seen)
+    cameras = [word for name in FRAMES for word in ("--camera", str(tmp_path / f"{name}.avi"))]
+    out = tmp_path / "recorded"
+    done(queue, Plan("record", ("record", "--out", str(out), *cameras, "--seconds", "2")))
+    assert {path.name for path in out.iterdir()} == {"cam1.avi", "cam2.avi", "meta.json"}
+    desk.close()
+
+
+def page_of(job: Job) -> str:
+    """Address of a job's own page, while it has one."""
+    return job.shown().address
+
+
+def done(queue: JobQueue, plan: Plan) -> None:
+    job = queue.add(plan)
+    assert until(lambda: queue.turn() or job.is_over, WORK_S)
+    assert job.state == "done", (job.told, job.progress.lines)
 
 
 def test_no_command_takes_a_runs_name_for_an_option(

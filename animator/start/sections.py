@@ -79,6 +79,8 @@ class ShownJob(msgspec.Struct, frozen=True):
     """Its own page."""
     bus: str = ""
     """Where programs hear its poses."""
+    made: str = ""
+    """Address of the file that it made."""
     again: bool = False
     """Whether its videos can be had in the tray again."""
 

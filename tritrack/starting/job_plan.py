@@ -9,6 +9,7 @@ from typing import Final, Literal, NamedTuple
 
 from animator.start.wishes import Compare, Export, Open, Report, Task, Work
 from common.bus.messages import MOST_VIEWS
+from runtime.store.run_exports import OWN_NAMES
 
 CLIPS: Final = ".clips"
 """Folder of the runs' own videos, hidden so that `runs/*/` matches runs alone."""
@@ -50,6 +51,8 @@ class Plan(NamedTuple):
     """A page stays open until it is ended, a work ends by itself."""
     frames: int = 0
     """Of the video; 0: not known."""
+    makes: Path | None = None
+    """A file of a run that it writes, to look at or to download."""
     needs: tuple[Path, ...] = ()
     """Files that it reads beside those that its command names."""
 
@@ -222,15 +225,20 @@ def run_plan(wish: Open | Export | Report | Compare, runs: Path, port: int) -> P
         runs: The folder of the runs.
         port: A free port, for a page.
     """
-    folder = str(runs / wish.run)
+    made = runs / wish.run
+    folder, names = str(made), {str(to): file for to, file in OWN_NAMES.items()}
     if isinstance(wish, Export):
         arguments = ("export", folder, "--to", wish.to, "--force")
-        return Plan(f"{wish.run}: write {wish.to.upper()}", arguments)
+        return Plan(
+            f"{wish.run}: write {wish.to.upper()}", arguments, makes=made / names.get(wish.to, "")
+        )
     if isinstance(wish, Report):
-        return Plan(f"{wish.run}: make a report", ("report", folder))
+        return Plan(f"{wish.run}: make a report", ("report", folder), makes=made / "report.html")
     if isinstance(wish, Compare):
         return Plan(
-            f"{wish.run}: compare with {wish.other}", ("compare", folder, str(runs / wish.other))
+            f"{wish.run}: compare with {wish.other}",
+            ("compare", folder, str(runs / wish.other)),
+            makes=made / "compare.html",
         )
     page = ("--page",) if wish.page == "replay" else ()
     return Plan(

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import IO, Final
+from urllib.parse import quote
 
 from animator.start.sections import Jobs, ShownJob, State
 from runtime.terminal import PROGRESS
@@ -25,7 +26,7 @@ LAST_WORDS_S: Final = 1.0
 """Seconds to wait for the last lines of a command that is over."""
 COLUMNS: Final = "100"
 """Width of the tables that commands print."""
-RESULTS: Final = {0: "done", 3: "written, but hardly to be believed"}
+RESULTS: Final = {0: "", 3: "written, but hardly to be believed"}
 """Exit codes of a command whose results are there."""
 
 
@@ -44,6 +45,14 @@ class Job:
     asked_s: float = 0.0
     """When it was asked to end; 0: never."""
     told: str = ""
+
+    @property
+    def made(self) -> str:
+        """Address of the file that it made; "": none."""
+        file = self.plan.makes
+        if self.state != "done" or file is None or not file.is_file():
+            return ""
+        return f"run/{quote(os.fsencode(file.parent.name))}/{quote(file.name)}"
 
     @property
     def is_over(self) -> bool:
@@ -74,6 +83,7 @@ class Job:
             address=self.progress.address if running and self.plan.kind == "page" else "",
             bus=self.progress.bus if running else "",
             again=self.gives_back,
+            made=self.made,
         )
 
 
@@ -119,6 +129,11 @@ class JobQueue:
             else:
                 job.asked_s = time.monotonic()
                 job.process.terminate()
+
+    @property
+    def jobs(self) -> tuple[Job, ...]:
+        """All of them, the newest last."""
+        return tuple(self._jobs)
 
     @property
     def names(self) -> frozenset[str]:

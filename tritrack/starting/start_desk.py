@@ -154,7 +154,7 @@ class StartDesk:
             self._delete(wish, page)
         else:
             job = self._begun(wish)
-            page.tell(Told(f"{job.plan.title}: {job.plan.command}", well=True))
+            page.tell(Told(f"{job.plan.title}: see Work", well=True))
         self._jobs_due_s = 0.0
 
     def _receive(self, wish: Chunk | Begin | Drop | Raise, page: StartPage) -> None:

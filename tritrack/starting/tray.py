@@ -25,6 +25,9 @@ SAME_S: Final = 0.5
 """Largest difference of lengths that is not told, seconds."""
 
 
+BLOCKED: Final = "Take away what is marked, or mend it and drop it again."
+
+
 class Facts(NamedTuple):
     """What was found out about a whole file."""
 
@@ -135,7 +138,7 @@ def shown_tray(
             for one in files
         ],
         tasks=tasks_of(len(infos), calibrations) if whole else (),
-        says=said if whole else "",
+        says=said if whole else BLOCKED if any(one.fault for one in facts.values()) else "",
         name=name_of_files([one.path.stem for one in files]) if files else "",
     )
 
