@@ -88,6 +88,8 @@ EVERY = (
     planned(Work(task="person"), TWO, KNOWN),
     planned(Work(task="board", square_mm=40.0), TWO, KNOWN),
     planned(Work(task="import"), [Dropped(Path("up/3/Calib.toml"))], KNOWN),
+    planned(Work(task="poles"), TWO, KNOWN),
+    planned(Work(task="markers"), TWO, KNOWN),
     board_plan(RUNS, "a4"),
     run_plan(Open("walk", "replay"), RUNS, 8081),
     run_plan(Open("walk", "retouch"), RUNS, 8081),
@@ -111,7 +113,8 @@ def test_two_runs_are_compared_by_their_folders() -> None:
 
 def test_what_can_be_done_follows_from_what_was_dropped() -> None:
     assert tasks_of(1, 0) == ("single",)
-    assert tasks_of(2, 0) == tasks_of(8, 0) == ("track", "person", "board")
+    assert tasks_of(2, 0) == ("track", "person", "board", "poles", "markers")
+    assert tasks_of(3, 0) == tasks_of(8, 0) == ("track", "person", "board")
     assert tasks_of(9, 0) == tasks_of(0, 0) == tasks_of(0, 2) == tasks_of(1, 1) == ()
     assert tasks_of(0, 1) == ("import",)
 

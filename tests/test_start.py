@@ -206,7 +206,8 @@ def test_no_serious_fault_of_access_and_nothing_beyond_the_window(
             wide = looking.ask("document.documentElement.scrollWidth")
             beyond = looking.ask(BEYOND.format(width=size[0]))
             assert (wide <= size[0], beyond) == (True, 0), size
-            unseen = "[...document.querySelectorAll('label')].filter(e => !e.control.offsetWidth)"
+            alone = "e => e.offsetWidth && !e.control.offsetWidth"
+            unseen = f"[...document.querySelectorAll('label')].filter({alone})"
             assert looking.ask(f"{unseen}.map(e => e.innerText).join()") == "", "a label alone"
             tab.call("Runtime.evaluate", expression=AXE.read_text())
             found = tab.call(
@@ -341,7 +342,7 @@ def test_cameras_are_seen_chosen_and_tracked_live(looking: Looking, started: Sta
     """Two files play as cameras; the live page is the one that stands."""
     click(looking, "#look")
     shown = "[...document.querySelectorAll('#cameras img')].filter(e => e.naturalWidth).length == 2"
-    assert looking.until(shown)
+    assert looking.until(shown, WORK_S)
     assert words(looking, "#cameras").count("160x120, 15 frames a second") == 2
     before = looking.ask("document.querySelector('#cameras img').src")
     assert looking.until(f"document.querySelector('#cameras img').src != {before!r}")
@@ -406,8 +407,9 @@ def test_a_board_is_watched_and_the_cameras_are_calibrated_by_what_it_showed(
         click(looking, "#use-file0")
         click(looking, "#use-file1")
         click(looking, "#watch")
-        assert looking.until("document.querySelector('#board-says').innerText.includes('mirrored')")
-        assert "Camera 1: 1 pose, " in words(looking, "#board-says")
+        mirrored = "document.querySelector('#board-says').innerText.includes('mirrored')"
+        assert looking.until(mirrored, WORK_S)
+        assert looking.until(mirrored.replace("mirrored", "Camera 1: 1 pose, "), WORK_S)
         assert "upper left" in words(looking, "#board-says")
         assert looking.until("document.querySelector('#cameras img')?.naturalWidth == 480")
         click(looking, "#watched")

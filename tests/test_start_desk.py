@@ -10,10 +10,11 @@ import pytest
 from spoiling import film_of, write_video
 from waiting import until
 
-from animator.start.wishes import Again, Compare, Delete, Demo, Report, Wish
-from tritrack.starting.job_plan import Plan, kept_calibration
+from animator.start.wishes import Again, Compare, Delete, Demo, Report, Task, Wish, Work
+from tritrack.starting.job_plan import Dropped, Known, Plan, kept_calibration, planned
 from tritrack.starting.job_queue import Job, JobQueue
 from tritrack.starting.start_desk import Given, StartDesk
+from tritrack.starting.start_files import place
 
 FRAMES = {"one": 45, "two": 48}
 """Lengths of the videos that jobs work on."""
@@ -129,6 +130,21 @@ def test_the_pages_own_commands_run(tmp_path: Path, clip: Path) -> None:
     done(queue, Plan("record", ("record", "--out", str(out), *cameras, "--seconds", "2")))
     assert {path.name for path in out.iterdir()} == {"cam1.avi", "cam2.avi", "meta.json"}
     desk.close()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("task", ["poles", "markers"])
+def test_the_page_of_points_to_click_is_opened(tmp_path: Path, clip: Path, task: Task) -> None:
+    queue, files = JobQueue(), [Dropped(clip / f"cam{n}.avi") for n in (1, 2)]
+    plan = planned(Work(task, name="room"), files, Known(tmp_path))
+    place(plan)
+    job = queue.add(plan)
+    assert until(lambda: queue.turn() or page_of(job), WORK_S), job.progress.lines
+    with urlopen(page_of(job)) as page:
+        assert b"marking.js" in page.read()
+    queue.cancel(job.number)
+    assert until(lambda: queue.turn() or job.is_over, WORK_S)
+    assert (job.state, job.told) == ("done", "closed"), job.progress.lines
 
 
 def page_of(job: Job) -> str:

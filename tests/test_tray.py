@@ -85,7 +85,9 @@ def test_the_sounds_of_two_videos_tell_how_late_one_is(monkeypatch: pytest.Monke
 
 def test_nothing_can_be_done_before_all_came_and_could_be_read() -> None:
     files = [whole(1, "a.avi"), whole(2, "b.avi")]
-    assert shown_tray(files, {1: Facts(WALK), 2: Facts(WALK)}).tasks == ("track", "person", "board")
+    assert shown_tray(files, {1: Facts(WALK), 2: Facts(WALK)}).tasks == (
+        *("track", "person", "board", "poles", "markers"),
+    )
     assert shown_tray(files, {1: Facts(WALK)}).tasks == ()
     spoilt = shown_tray(files, {1: Facts(WALK), 2: Facts(fault="b.avi is empty")})
     assert (spoilt.tasks, spoilt.files[1].fault) == ((), "b.avi is empty")

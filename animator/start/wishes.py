@@ -17,7 +17,7 @@ MOST_TEXT_BYTES: Final = 10_000
 MOST_FILE_BYTES: Final = 1 << 62
 """Upper bound of what a browser may say of a file's size, bytes."""
 
-Task = Literal["single", "track", "person", "board", "import"]
+Task = Literal["single", "track", "person", "board", "poles", "markers", "import"]
 """A job for the dropped files."""
 
 

@@ -14,6 +14,8 @@ ALONE: Final = 20
 """Poses for each camera that are advised."""
 SHARED: Final = 10
 """Of these, the ones that another camera sees at once."""
+HOLD_S: Final = 2.0
+"""How long each pose is held, seconds, where several pictures a second are looked at."""
 PARTS: Final = (3, 3)
 """Rows and columns of the parts of a picture that are named."""
 PART_COVERED: Final = 0.4
@@ -131,22 +133,28 @@ def is_enough(state: BoardProgress) -> bool:
     return not any(_wanted(state, n) for n in range(len(state.cameras)))
 
 
-def words_of(state: BoardProgress, names: Sequence[str]) -> list[str]:
-    """How far each camera is and what it still needs, a line each; then what to do at the end."""
+def words_of(state: BoardProgress, names: Sequence[str], hold_s: float = HOLD_S) -> list[str]:
+    """How far each camera is and what it still needs, a line each; then what to do at the end.
+
+    Args:
+        state: What was shown.
+        names: Of the cameras.
+        hold_s: How long the board must be held still, seconds.
+    """
     lines = []
     for n, (name, seen) in enumerate(zip(names, state.cameras, strict=True)):
         share = np.count_nonzero(seen.cells) / seen.cells.size
         poses = f"{seen.poses} pose{'' if seen.poses == 1 else 's'}"
         line = f"{name}: {poses}, {share:.0%} of its picture"
         line += f", {seen.shared} together with another camera" if len(names) > 1 else ""
-        wanted = _wanted(state, n)
+        wanted = _wanted(state, n, hold_s)
         lines.append(f"{line}. {'; '.join(wanted) if wanted else 'Enough'}.")
     if is_enough(state):
         lines.append("Last, lay the board flat on the floor at two or three places that all see.")
     return lines
 
 
-def _wanted(state: BoardProgress, number: int) -> list[str]:
+def _wanted(state: BoardProgress, number: int, hold_s: float = HOLD_S) -> list[str]:
     seen = state.cameras[number]
     if seen.is_mirrored:
         return [
@@ -155,7 +163,7 @@ def _wanted(state: BoardProgress, number: int) -> list[str]:
         ]
     wanted = []
     if seen.poses < ALONE:
-        wanted.append(f"{ALONE - seen.poses} more, held still for two seconds each, tilted")
+        wanted.append(f"{ALONE - seen.poses} more, held still for {hold_s:.0f} s each, tilted")
     missing = missing_parts(seen)
     if missing:
         wanted.append(f"hold it {', '.join(missing)}")

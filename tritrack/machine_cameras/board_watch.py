@@ -37,6 +37,8 @@ class BoardWatch:
         self.progress: BoardProgress | None = None
         """None before all cameras gave a picture."""
         self.fault = ""
+        self.period_s = 1.0 / HZ
+        """Between the last two pictures that were looked at, seconds."""
         self._boards: tuple[Board, ...] = tuple(BOARDS.values())
         self._over = threading.Event()
         self._thread = threading.Thread(target=self._run, name="board", daemon=True)
@@ -65,6 +67,7 @@ class BoardWatch:
     def _run(self) -> None:
         writers: list[cv2.VideoWriter] = []
         before: list[Image] = []
+        looked_s = 0.0
         try:
             for _ in range(MOST_PICTURES):
                 began_s = time.monotonic()
@@ -73,6 +76,8 @@ class BoardWatch:
                     one is other for one, other in zip(pictures, before, strict=False)
                 )
                 if fresh:
+                    self.period_s = began_s - looked_s if before else self.period_s
+                    looked_s = began_s
                     writers = writers or self._opened(pictures)
                     self._look(began_s, pictures)
                     for writer, picture in zip(writers, pictures, strict=True):

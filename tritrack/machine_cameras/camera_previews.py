@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Final
 
 from animator.start.sections import Cameras, ShownCamera
-from calibration.board.board_progress import words_of
+from calibration.board.board_progress import HOLD_S, words_of
 from common.config.picture_size import working_size
 from common.video.clip_sources import ClipError
 from common.video.clips import probed
@@ -28,6 +28,10 @@ from tritrack.marking.stills import Running, jpeg_of
 
 BOUND: Final = (640, 480)
 """Bound of a preview, pixels: a board can be read in it."""
+
+
+LOOKS: Final = 3
+"""Looks at a board within which it is seen at rest: on a busy machine these take longer."""
 
 
 class Playing:
@@ -183,7 +187,8 @@ class Previews:
         if watch.fault or watch.progress is None:
             return (watch.fault or "The cameras give their first pictures ...",)
         names = [f"Camera {n}" for n in range(1, len(self._watched) + 1)]
-        return tuple(words_of(watch.progress, names))
+        hold_s = max(HOLD_S, LOOKS * watch.period_s)
+        return tuple(words_of(watch.progress, names, hold_s))
 
 
 def _newest(preview: Preview) -> Image | None:

@@ -6,7 +6,7 @@ from typing import Final
 
 from animator.start.sections import Calibrations, ShownCalibration
 from common.rig.rig_file import CalibrationError, load_rig
-from tritrack.starting.job_plan import CALIBRATIONS, NAME, kept_calibration
+from tritrack.starting.job_plan import CALIBRATIONS, NAME, kept_calibration, kept_points
 
 BOARD: Final = "board.pdf"
 MOST_SHOWN: Final = 50
@@ -54,4 +54,5 @@ def remove_calibration(runs: Path, name: str) -> bool:
     path = kept_calibration(runs, name)
     path.unlink()
     path.with_suffix(".txt").unlink(missing_ok=True)
+    kept_points(runs, name).unlink(missing_ok=True)
     return True

@@ -9,6 +9,7 @@ from typing import Final, Literal, NamedTuple
 
 from animator.start.wishes import Compare, Export, Open, Report, Task, Work
 from common.bus.messages import MOST_VIEWS
+from runtime.live.free_ports import free_port
 from runtime.store.run_exports import OWN_NAMES
 
 CLIPS: Final = ".clips"
@@ -23,6 +24,8 @@ NUMBERED: Final = re.compile(r"(cam(era)?|view)?[\W_]*\d+", re.IGNORECASE)
 """A file's name that tells a camera's number alone."""
 SIZE: Final = ("--size", "320x240")
 """The working size of `tritrack single`; that of `tritrack track` is half of it."""
+MARKED_VIEWS: Final = 2
+"""Cameras that poles and markers are for."""
 STATURE_M: Final = (0.5, 2.6)
 SQUARE_MM: Final = (1.0, 1000.0)
 OFFSET_S: Final = (-3600.0, 3600.0)
@@ -92,7 +95,8 @@ def tasks_of(videos: int, calibrations: int) -> tuple[Task, ...]:
         return ("import",) if calibrations == 1 and not videos else ()
     if videos == 1:
         return ("single",)
-    return ("track", "person", "board") if 2 <= videos <= MOST_VIEWS else ()
+    marked: tuple[Task, ...] = ("poles", "markers") if videos == MARKED_VIEWS else ()
+    return ("track", "person", "board", *marked) if 2 <= videos <= MOST_VIEWS else ()
 
 
 def plain_name(text: str) -> str:
@@ -145,6 +149,8 @@ def planned(wish: Work, files: Sequence[Dropped], known: Known) -> Plan:
     name = free_name(proposed, known.names)
     if wish.task in ("person", "board", "import"):
         return _calibrating(wish, files, known.runs, name)
+    if wish.task in ("poles", "markers"):
+        return _marking(wish, files, known.runs, name)
     return _tracking(wish, files, known, name)
 
 
@@ -198,6 +204,16 @@ def _calibrating(wish: Work, files: Sequence[Dropped], runs: Path, name: str) ->
     return Plan(title, ("calibrate", *arguments, *end), placed, report=report)
 
 
+def _marking(wish: Work, files: Sequence[Dropped], runs: Path, name: str) -> Plan:
+    """Points are clicked on a page of their own; those of poles make a calibration."""
+    folder, made = runs / CLIPS / name, kept_calibration(runs, name)
+    points = kept_points(runs, name)
+    page = ("--page", str(folder), "--port", str(free_port()))
+    out = ("--out", str(made)) if wish.task == "poles" else ()
+    arguments = ("calibrate", wish.task, str(points), *page, *out)
+    return Plan(f"{name}: click the {wish.task}", arguments, cameras_of(files, folder), kind="page")
+
+
 def cameras_of(files: Sequence[Dropped], folder: Path) -> tuple[tuple[Path, Path], ...]:
     """Where the videos of a clip come to lie: cam1.*, cam2.* and so on."""
     return tuple(
@@ -209,6 +225,11 @@ def cameras_of(files: Sequence[Dropped], folder: Path) -> tuple[tuple[Path, Path
 def kept_calibration(runs: Path, name: str) -> Path:
     """The file of a calibration of the list."""
     return runs / CALIBRATIONS / f"{name}.json"
+
+
+def kept_points(runs: Path, name: str) -> Path:
+    """The file of the points that were clicked for one."""
+    return runs / CALIBRATIONS / f"{name}_points.toml"
 
 
 def board_plan(runs: Path, paper: str) -> Plan:

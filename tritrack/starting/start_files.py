@@ -9,7 +9,7 @@ from urllib.parse import unquote
 from animator.page.page_server import POLICY, REPORT_POLICY, File
 from common.atomic_file import unwritten
 from tritrack.starting.calibration_list import calibration_file
-from tritrack.starting.job_plan import CLIPS, Plan, PlanError
+from tritrack.starting.job_plan import CALIBRATIONS, CLIPS, Plan, PlanError
 from tritrack.starting.run_list import found_runs, made_by, run_file, run_folder
 from tritrack.starting.uploads import link_or_copy
 
@@ -38,8 +38,9 @@ def place(plan: Plan) -> None:
             link_or_copy(source, target)
         except OSError as error:
             raise PlanError(unwritten(target, error, "drop the files again")) from error
-    if plan.report is not None:
-        plan.report.parent.mkdir(parents=True, exist_ok=True)
+    for word in plan.arguments:
+        if Path(word).parent.name == CALIBRATIONS:
+            Path(word).parent.mkdir(parents=True, exist_ok=True)
 
 
 def clean(runs: Path, is_used: Callable[[Path], bool]) -> None:

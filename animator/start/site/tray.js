@@ -7,6 +7,8 @@ const TASKS = {
   track: "Follow the person",
   person: "Calibrate by the person",
   board: "Calibrate by the board",
+  poles: "Calibrate by poles, clicked",
+  markers: "Aim by line markers, clicked",
   import: "Take over the calibration",
 };
 
