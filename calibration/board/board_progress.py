@@ -148,7 +148,7 @@ def words_of(state: BoardProgress, names: Sequence[str], hold_s: float = HOLD_S)
         line = f"{name}: {poses}, {share:.0%} of its picture"
         line += f", {seen.shared} together with another camera" if len(names) > 1 else ""
         wanted = _wanted(state, n, hold_s)
-        lines.append(f"{line}. {'; '.join(wanted) if wanted else 'Enough'}.")
+        lines.append(f"{line}. {'; '.join(wanted).capitalize() if wanted else 'Enough'}.")
     if is_enough(state):
         lines.append("Last, lay the board flat on the floor at two or three places that all see.")
     return lines

@@ -20,6 +20,7 @@ export class Cameras {
     this.on = on;
     this.watching = watching;
     at("watch").ariaPressed = watching;
+    at("cameras").className = watching ? "watching" : "";
     at("watch").textContent = watching ? "Watch the board no longer" : "Watch the board";
     at("watched").hidden = at("square-field").hidden = !watching;
     fill(at("board-says"), board, (_, n) => n, (line) => element("li", {}, line));
