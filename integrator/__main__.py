@@ -6,6 +6,8 @@ import time
 from collections.abc import Sequence
 from typing import Final, NamedTuple
 
+import msgspec
+
 from common.bus.bus import Bus, open_hub
 from common.bus.control_messages import Cameras, Command
 from common.bus.instant import Instant
@@ -25,7 +27,7 @@ from integrator.integrator_warmup import warm_up
 from integrator.live_rig.live_calibration import LiveCalibration, is_by_person
 from integrator.measuring import opening_posture
 from integrator.merge_state import Start, State
-from integrator.people import recognition, several
+from integrator.people import look_turns, recognition, several
 from integrator.single.sight import Annotations
 
 LAST_WORDS_S: Final = 1.0
@@ -41,6 +43,8 @@ class Merging(NamedTuple):
     said: Annotations = Annotations()
     """The user's annotations of the next instant."""
     noticed: diagnostics.State = diagnostics.State()
+    turn: look_turns.State = look_turns.State()
+    """Who is looked at while the run is late."""
 
 
 def run(
@@ -94,11 +98,14 @@ def _obeyed(at: Merging, asked: Sequence[Command], bus: Bus) -> Merging:
 def _merged(at: Merging, instant: Instant, bus: Bus, pace: Pace) -> tuple[Merging, Instant]:
     """Merge one instant, and publish its guide and bodies; also the views of the first of these."""
     state, merged = several.step(at.state, instant, at.said)
-    bus.publish(merged.guide)
+    late_s = time.monotonic() - instant.newest.clock_s
+    turn, due = look_turns.step(at.turn, late_s, state.room.period_s, state.lives)
+    bus.publish(msgspec.structs.replace(merged.guide, due=due))
     for body in merged.bodies:
         bus.publish(body)
     pace.done(instant.newest.clock_s, time.monotonic())
-    return Merging(state, noticed=diagnostics.step(at.noticed, instant)), merged.of_first
+    noticed = diagnostics.step(at.noticed, instant)
+    return Merging(state, noticed=noticed, turn=turn), merged.of_first
 
 
 def _leave(

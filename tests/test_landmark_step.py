@@ -19,7 +19,9 @@ from viewer.captured_frame import CapturedFrame
 from viewer.landmark_step import State, _owners, searched, step
 from viewer.landmarks.landmark_window import Window
 from viewer.landmarks.person_mask import LandmarkResult, Shown
+from viewer.people import close_people
 from viewer.people.known_people import People, Track, of_one
+from viewer.people.looks_in_turn import LastLook
 from viewer.people.people_detector import Detection
 from viewer.silhouette.silhouette import Seen
 
@@ -325,3 +327,72 @@ def test_everyone_is_seen_in_the_first_frame_also_where_one_is_known_from_the_wh
     scene = Scene(monkeypatch, standing(60.0), standing(250.0))
     _, shown = scene.step(State(of_one(scene.people[0])), 0.0)
     assert columns(shown) == pytest.approx([column(each) for each in scene.people])
+
+
+def test_who_is_not_due_is_not_looked_at_and_goes_on_from_the_last_look(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    scene, state = Scene(monkeypatch, standing(60.0), standing(240.0)), State()
+    for at in range(10):
+        state, shown = scene.step(state, at / 15)
+    followed, ((other, _),) = shown.number, shown.others
+    looked: list[int] = []
+
+    def look(person: int) -> Callable[..., LandmarkResult]:
+        def shown_person(*_: Any, **__: Any) -> LandmarkResult:
+            looked.append(person)
+            return LandmarkResult(scene.people[person])
+
+        return shown_person
+
+    monkeypatch.setattr(landmark_step, "own_landmarks", look(0))
+    monkeypatch.setattr(landmark_step, "look_in", look(1))
+    carried = []
+    for due in (other, followed, None):
+        state, shown = scene.step(state, state.people.tracks[0].seen_s + 1 / 15, due=due)
+        assert columns(shown) == pytest.approx([60.0, 240.0], abs=3.0)
+        carried.append((shown.followed.carried, shown.others[0][1].carried))
+    assert carried == [(True, False), (False, True), (False, False)]
+    assert looked == [1, 0, 0, 1]
+
+
+def test_of_two_who_are_close_the_one_who_is_not_due_is_carried_on(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    people = [standing(100.0), standing(150.0)]
+    looked: list[float] = []
+
+    def look_in(_: Image, window: Window, __: Any) -> LandmarkResult:
+        middle = window.left + window.side / 2
+        looked.append(middle)
+        return LandmarkResult(min(people, key=lambda each: abs(column(each) - middle)))
+
+    monkeypatch.setattr(close_people, "look_in", look_in)
+    found = (detected(100.0), detected(150.0))
+    tracks = tuple(Track(n, each, 1.0) for n, each in enumerate(people))
+    last = tuple(
+        LastLook(n, LandmarkResult(each), 1.0, ((0.0, 0.0),) * 15) for n, each in enumerate(people)
+    )
+    state = State(People(tracks, 0, 2), 1.0, detected=found, looks=last)
+    later = 1.0 + 1 / 15
+    state, shown = step(state, frame(later), EMPTY, SETTINGS, alone=False, due=1)
+    assert looked == pytest.approx([150.0], abs=10.0)
+    assert (shown.followed.carried, shown.others[0][1].carried) == (True, False)
+    assert [each.at_s for each in state.looks] == [1.0, later]
+
+
+def test_of_people_who_are_close_a_report_does_not_wait_for_the_search(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """It is of every frame, and serves the next: a new person, and where each is."""
+    scene = Scene(monkeypatch, standing(100.0), standing(150.0))
+    monkeypatch.setattr(close_people, "look_in", scene._look_in)
+    tracks = tuple(Track(n, each, 0.9) for n, each in enumerate(scene.people))
+    state = State(People(tracks, 0, 2), 0.9, detected=())
+    scene.people.append(standing(260.0))
+    state, shown = step(state, frame(1.0), EMPTY, SETTINGS, alone=False)
+    assert scene.searches == []
+    assert columns(shown) == pytest.approx([100.0, 150.0], abs=3.0)
+    state, shown = scene.step(state, 1.0 + 1 / 15)
+    assert columns(shown) == pytest.approx([100.0, 150.0, 260.0], abs=3.0)
+    assert len(scene.searches) == 2

@@ -7,6 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from common.body.observation import Box, Observation
+from common.bus.messages import View
 from viewer.captured_frame import CapturedFrame
 from viewer.load_shedding import LASTS_S, LATE, LoadShedder
 
@@ -57,9 +59,10 @@ def test_at_the_end_it_is_told_how_many_were_and_what_to_do_but_not_of_a_few() -
     for late_s in (0.1, *[0.0] * 4):
         shedder.of_frame(FRAME, late_s)
     assert shedder.frames == 5
-    assert shedder.odd(250) == ""
-    assert shedder.odd(100).startswith("5 of 100 frames came too late")
-    assert "fewer rooms" in shedder.odd(100)
+    assert shedder.odd(250) == ()
+    (odd,) = shedder.odd(100)
+    assert odd.startswith("5 of 100 frames came too late")
+    assert "fewer rooms" in odd
 
 
 @pytest.mark.parametrize(("frames", "told"), [(250, False), (249, True)])
@@ -67,7 +70,9 @@ def test_two_in_a_hundred_frames_may_be_hurried_without_a_word(frames: int, told
     shedder = LoadShedder(PERIOD_S, 1)
     shedder.frames = 5
     assert bool(shedder.odd(frames)) == told
-    assert shedder.odd(40).startswith("5 of 40 frames came too late to be looked into, only their")
+    assert shedder.odd(40)[0].startswith(
+        "5 of 40 frames came too late to be looked into, only their"
+    )
 
 
 @pytest.mark.parametrize(("period_s", "lasts"), [(1 / 30, 10), (1 / 4, 1), (1.0, 1)])
@@ -82,3 +87,27 @@ def test_where_everyone_is_followed_a_viewer_keeps_its_landmarks_for_a_whole_per
     shedder = LoadShedder(PERIOD_S, "all")
     assert not shedder.of_frame(FRAME, 0.9 * PERIOD_S).hurried
     assert shedder.of_frame(FRAME, 1.1 * PERIOD_S).hurried
+
+
+def test_frames_in_which_people_were_looked_at_in_turn_are_counted_and_told() -> None:
+    shedder = LoadShedder(PERIOD_S, "all")
+    for people in ((of_track(0), of_track(1)), (of_track(0, carried=True), of_track(1)), ()):
+        shedder.reported(
+            View(frame=0, captured_s=0.0, clock_s=0.0, viewer=1, width=40, height=30, people=people)
+        )
+    assert shedder.in_turn == 1
+    assert shedder.odd(50) == ()
+    (odd,) = shedder.odd(49)
+    assert odd.startswith("1 of 49 frames came late: people were looked at in turn")
+
+
+def of_track(number: int, carried: bool = False) -> Observation:
+    return Observation(
+        track=number,
+        width=40,
+        height=30,
+        silhouette=b"",
+        box=Box(1, 1, 8, 8),
+        area_px=64,
+        carried=carried,
+    )

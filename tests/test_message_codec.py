@@ -117,6 +117,7 @@ GUIDE = Guide(
     bdp=BDP,
     pose=tuple(rest_pose().tolist()),
     moves=(False, True),
+    due=(None, 3),
 )
 BODY = Body(
     frame=7,

@@ -127,6 +127,7 @@ def test_every_sample_names_its_room_and_ends_in_its_unit() -> None:
         "tritrack_late_messages",
         "tritrack_missed_guides",
         "tritrack_hurried_frames",
+        "tritrack_in_turn_frames",
         "tritrack_rejected_messages",
         "tritrack_restarts",
         "tritrack_bodies",

@@ -133,6 +133,7 @@ def run(prepared: Prepared, live: Live, bus: Bus, stop: threading.Event) -> None
                 bus.publish(missed)
             bus.publish(report)
             unheard_reports.said(report)
+            shedder.reported(report)
             pace.done(frame.clock_s - live.offset_s, time.monotonic())
             if state.setup.settings.pictures:
                 bus.publish(_picture(view.number, frame))
@@ -149,7 +150,8 @@ def run(prepared: Prepared, live: Live, bus: Bus, stop: threading.Event) -> None
         raise
     finally:  # Even when the decoder crashed: the run must not wait for this view again.
         bus.publish(Ended(viewer=view.number, frames=pace.frames, why=why))
-    for odd in (shortfall(view, live.ending) if live.over else "", shedder.odd(pace.frames)):
+    short = shortfall(view, live.ending) if live.over else ""
+    for odd in (short, *shedder.odd(pace.frames)):
         if odd:
             log.warning(odd)
             warnings = (*warnings, odd)
@@ -272,6 +274,7 @@ def _news(live: Live, guides: Guides, shedder: LoadShedder, warnings: tuple[str,
         "dropped": live.dropped,
         "guide_misses": guides.misses,
         "hurried": shedder.frames,
+        "in_turn": shedder.in_turn,
         "malformed": guides.malformed,
         "foreign": guides.foreign,
     }

@@ -59,3 +59,8 @@ def moving_since_s(guide: Guide | None, viewer: ViewerNumber) -> float | None:
         return None
     moves = any(moves for number, moves in enumerate(guide.moves, start=1) if number != viewer)
     return guide.captured_s - MOTION_S if moves else None
+
+
+def due_in(guide: Guide | None, viewer: ViewerNumber) -> int | None:
+    """The number of the person whose turn it is in a view; None: everyone is looked at."""
+    return guide.due[place_in_rig(viewer)] if guide is not None and guide.due else None

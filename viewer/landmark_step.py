@@ -1,7 +1,7 @@
 """A viewer's landmarks, frame by frame: where the network looks, when, and at whom."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from operator import itemgetter
 from typing import Final, NamedTuple
 
@@ -23,9 +23,10 @@ from viewer.landmarks.own_landmarks import (
     window_of_joints,
 )
 from viewer.landmarks.person_mask import LandmarkResult, Shown
-from viewer.people import known_people
+from viewer.people import known_people, looks_in_turn
 from viewer.people.close_people import are_close, beside, cheapest, looked_at_alone, without
 from viewer.people.known_people import PEOPLE, Look, People, corners_of, is_person
+from viewer.people.looks_in_turn import LastLook
 from viewer.people.people_detector import NETWORK, Detection, overlap, people_in
 from viewer.room.body_region import Bytes
 from viewer.silhouette.silhouette import Seen, seen_of
@@ -53,6 +54,8 @@ class State(NamedTuple):
     """The picture of that frame, while that is still to be done."""
     detected: tuple[Detection, ...] | None = None
     """The people in it, for the next frame; None: it was not searched, or they have served."""
+    looks: tuple[LastLook, ...] = ()
+    """The last look at each person; empty where there is one at most."""
 
     @property
     def known(self) -> Landmarks | None:
@@ -68,6 +71,7 @@ def step(
     *,
     alone: bool,
     root_px: Pixel | None = None,
+    due: int | None = None,
 ) -> tuple[State, Shown]:
     """The landmarks of a frame: our own network's, or those that an outside source sent with it.
 
@@ -83,6 +87,7 @@ def step(
         alone: The viewer is the only one of its run.
         root_px: Where the integrator predicts the pelvis of the person that it follows; None: it
             does not.
+        due: The number of the person whose turn it is; None: everyone is looked at.
     """
     if not settings.looks_itself:
         result = LandmarkResult(nearest_landmarks(frame.landmarks, seen.box))
@@ -92,11 +97,12 @@ def step(
     state = searched(state)
     people = known_people.expected_at(state.people, root_px)
     model = LandmarkModel(network_of(settings.landmarks), alone and not frame.hurried)
+    carried = looks_in_turn.carried(state.looks, due, frame.captured_s)
     if not frame.hurried and are_close(people):
-        looks, new = looked_at_alone(frame.picture, people, model)
-        state = state._replace(searched_s=frame.captured_s)
+        looks, new = looked_at_alone(frame.picture, people, model, state.detected or (), carried)
+        state = _due(state, frame, 0.0)
     else:
-        looks, new = _looks(frame.picture, seen, people, model), list[LandmarkResult]()
+        looks, new = _looks(frame.picture, seen, people, model, carried), list[LandmarkResult]()
         is_first = state.searched_s == -math.inf
         state = _due(state, frame, _interval_s(people, looks[people.followed], seen))
         if is_first or not people.tracks:
@@ -107,7 +113,8 @@ def step(
     after, shown = _identified(people, frame.captured_s, looks, new)
     if not shown and not is_person(followed.landmarks):
         shown = {after.followed: followed}
-    return state._replace(people=after, detected=None), _shown(after, shown)
+    last = looks_in_turn.step(state.looks, shown, frame.captured_s) if len(shown) > 1 else ()
+    return state._replace(people=after, detected=None, looks=last), _shown(after, shown)
 
 
 def open_networks(settings: Settings) -> None:
@@ -136,19 +143,26 @@ def _due(state: State, frame: CapturedFrame, interval_s: float) -> State:
 
 
 def _looks(
-    picture: Image, seen: Seen, people: People, model: LandmarkModel
+    picture: Image,
+    seen: Seen,
+    people: People,
+    model: LandmarkModel,
+    carried: Mapping[int, LandmarkResult],
 ) -> dict[int, LandmarkResult]:
-    """What the network sees where the people who are known were, by their numbers."""
+    """What the network sees where the people who are known were, by their numbers, with those who
+    are carried on."""
     others = people.others
     known = {track.number: track.landmarks for track in people.tracks}
     own = known_people.last(people)
-    theirs = None if own is None else beside(picture, people.followed, known)
-    looks = {
-        people.followed: own_landmarks(
-            without(picture, theirs), _less(seen, theirs), own, model, crowded=bool(others)
-        )
-    }
+    looks = dict(carried)
+    if people.followed not in carried:
+        theirs = None if own is None else beside(picture, people.followed, known)
+        alone, silhouette = without(picture, theirs), _less(seen, theirs)
+        look = own_landmarks(alone, silhouette, own, model, crowded=bool(others))
+        looks[people.followed] = look
     for track in others:
+        if track.number in carried:
+            continue
         window = window_of_joints(track.landmarks)
         if window is not None:
             alone = without(picture, beside(picture, track.number, known))

@@ -1,9 +1,10 @@
-"""Load shedding: a late viewer skips its most expensive part, the landmark network."""
+"""Load shedding: a late viewer skips the landmark network, or some of its looks."""
 
 from typing import Final, Literal
 
 import msgspec
 
+from common.bus.messages import View
 from viewer.captured_frame import CapturedFrame
 
 LATE: Final = 0.15
@@ -29,6 +30,8 @@ class LoadShedder:
         """Start for a given frame period, and the people who are followed."""
         self.frames = 0
         """Number of frames processed without landmarks."""
+        self.in_turn = 0
+        """Number of frames in which some people were not looked at."""
         self._late_s = (LATE if people == 1 else LATE_OF_SEVERAL) * period_s
         self._lasts = max(1, round(LASTS_S / period_s))
         self._left = self._in_a_row = 0
@@ -43,11 +46,19 @@ class LoadShedder:
         self.frames += 1
         return msgspec.structs.replace(frame, hurried=True)
 
-    def odd(self, frames: int) -> str:
-        """The report at the end of that many frames; "" where few were affected."""
-        if self.frames <= TOLD * frames:
-            return ""
-        return (
-            f"{self.frames} of {frames} frames came too late to be looked into, only their outlines"
-            " were told: give this machine fewer rooms, a smaller size or fewer frames a second"
+    def reported(self, view: View) -> None:
+        """Count a report."""
+        self.in_turn += any(one.carried for one in view.people)
+
+    def odd(self, frames: int) -> tuple[str, ...]:
+        """The reports at the end of that many frames; none where few were affected."""
+        cure = "give this machine fewer rooms, a smaller size or fewer frames a second"
+        left_out = (
+            (self.frames, "came too late to be looked into, only their outlines were told"),
+            (self.in_turn, "came late: people were looked at in turn, the others carried on"),
+        )
+        return tuple(
+            f"{count} of {frames} frames {what}: {cure}"
+            for count, what in left_out
+            if count > TOLD * frames
         )

@@ -21,7 +21,7 @@ from viewer.background.background import Background
 from viewer.background.moved_objects import Patch
 from viewer.background.turned_picture import lens_of, turned_background
 from viewer.captured_frame import CapturedFrame
-from viewer.expected_body import expected_body, followed_px, moving_since_s
+from viewer.expected_body import due_in, expected_body, followed_px, moving_since_s
 from viewer.landmarks.person_mask import LandmarkResult, Shown
 from viewer.paper import pose_search
 from viewer.people import worn_clothes
@@ -175,6 +175,7 @@ def look(state: State, frame: CapturedFrame, guide: Guide | None) -> tuple[State
             setup.settings,
             alone=setup.alone,
             root_px=followed_px(guide, setup.viewer),
+            due=due_in(guide, setup.viewer),
         )
     least_share = setup.settings.silhouette.min_height_share
     held = corrected(seen, shown.followed, least_share, shown.masks)

@@ -117,6 +117,9 @@ class Observation(
     """The silhouette touches the picture's border: the person is partly outside."""
     landmarks: Landmarks | None = None
     """None where the source of landmarks sees no person here, or there is none."""
+    carried: bool = False
+    """The landmarks are those of an earlier frame, moved on: where a run of several people is late,
+    they are looked at in turn."""
     colours: tuple[float, ...] = ()
     """Mean L*a*b* of the clothes of the upper body, then of the legs; empty where there are no
     landmarks."""

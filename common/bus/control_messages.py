@@ -21,6 +21,8 @@ class Pulse(Message, frozen=True, kw_only=True):
     guide_misses: int = 0
     hurried: int = 0
     """Number of late frames that a viewer reported with the silhouette alone."""
+    in_turn: int = 0
+    """Number of frames in which a viewer looked at some people only, as the run was late."""
     malformed: int = 0
     foreign: int = 0
     """Number of messages that were dropped because they came from another run."""

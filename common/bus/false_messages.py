@@ -45,6 +45,7 @@ _LENGTHS: Final[dict[tuple[type[Message], str], tuple[int, ...]]] = {
     (Body, "moved"): _VIEWS,
     **{(Body, name): _VIEWS[1:] for name in ("seen", "score", "facing", "made_of")},
     (Guide, "frames"): _VIEWS[1:],
+    (Guide, "due"): _VIEWS,
 }
 
 

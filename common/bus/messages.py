@@ -103,6 +103,9 @@ class Guide(Moment, frozen=True, kw_only=True):
     moves: tuple[bool, ...] = (False, False)
     """For each view, whether its silhouette has changed within the last MOTION_S as a moving
     person's does. A view without change while another has some shows a frozen picture."""
+    due: tuple[int | None, ...] = ()
+    """For each view, the viewer's own number of the person whose turn it is, as the run is late:
+    the others' landmarks are carried on. None, or empty: everyone is looked at."""
 
 
 class Lifting(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

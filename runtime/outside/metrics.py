@@ -20,6 +20,7 @@ COUNTS: Final = (
     ("late_messages", "late", "Reports that came after their instant was merged."),
     ("missed_guides", "guide_misses", "Frames that were looked at without a guide of the last."),
     ("hurried_frames", "hurried", "Frames so late that a viewer told their outline alone."),
+    ("in_turn_frames", "in_turn", "Late frames in which people were looked at in turn."),
 )
 """Name of a counter, its field in a Pulse, its description."""
 CAUSES: Final = ("malformed", "foreign")

@@ -58,6 +58,8 @@ class LandmarkResult(NamedTuple):
     """None: it sees no person."""
     person: PersonMask | None = None
     """Where the network sees the person; None: an outside source does not say."""
+    carried: bool = False
+    """It is of an earlier frame, moved on: there was no look."""
 
     @property
     def surety(self) -> float:

@@ -13,7 +13,7 @@ from viewer.landmarks.landmark_window import GREY, Window
 from viewer.landmarks.own_landmarks import LandmarkModel, look_in, window_of_joints
 from viewer.landmarks.person_mask import LandmarkResult
 from viewer.people.known_people import PEOPLE, People, corners_of, distance
-from viewer.people.people_detector import people_in
+from viewer.people.people_detector import Detection
 from viewer.room.body_region import Bytes, body_region
 
 BEYOND: Final = 0.04
@@ -63,7 +63,11 @@ def are_close(people: People) -> bool:
 
 
 def looked_at_alone(
-    picture: Image, people: People, model: LandmarkModel
+    picture: Image,
+    people: People,
+    model: LandmarkModel,
+    detected: Sequence[Detection],
+    carried: Mapping[int, LandmarkResult],
 ) -> tuple[dict[int, LandmarkResult], list[LandmarkResult]]:
     """The looks at people who are close to each other, by number, and at new ones.
 
@@ -71,8 +75,9 @@ def looked_at_alone(
         picture: (H, W, 3)
         people: After the frame before.
         model: How the followed person, and new ones, are looked at.
+        detected: The people in the frame before; who is not among them is where they were.
+        carried: Those who are not looked at, by number.
     """
-    detected = people_in(picture)
     costs = [
         [distance(each.landmarks, track.landmarks) for track in people.tracks] for each in detected
     ]
@@ -86,8 +91,10 @@ def looked_at_alone(
         if n not in owners and window is not None:
             seen.append((track.number, track.landmarks, window))
     places = {place: landmarks for place, (_, landmarks, _) in enumerate(seen)}
-    looks, new = {people.followed: LandmarkResult(None)}, list[LandmarkResult]()
+    looks, new = {people.followed: LandmarkResult(None), **carried}, list[LandmarkResult]()
     for place, (number, _, window) in enumerate(seen):
+        if number in carried:
+            continue
         alone = without(picture, beside(picture, place, places, window))
         often = number in {None, people.followed}
         look = look_in(alone, window, model if often else model._replace(twice=False))

@@ -6,10 +6,10 @@ import msgspec
 import numpy as np
 
 from common.body.body import JOINT_NAMES
-from common.body.observation import Landmarks, Observation
+from common.body.observation import Observation
 from common.raster.silhouette_report import pack
 from common.video.pictures import Image
-from viewer.landmarks.person_mask import PersonMask, Shown
+from viewer.landmarks.person_mask import LandmarkResult, PersonMask, Shown
 from viewer.people.clothes_colours import clothes_colours
 from viewer.room.silhouette_correction import corrected
 from viewer.silhouette import silhouette
@@ -41,7 +41,7 @@ def everyone(
             own = corrected(first, result, least_share, rivals).seen
             own = _less(own, seen, least_share) if is_seen else own
             people.append((number, own, result))
-    each = (_observation(own, result.landmarks, number) for number, own, result in people)
+    each = (_observation(own, result, number) for number, own, result in people)
     return tuple(_coloured(picture, one) for one in each if one is not None)
 
 
@@ -65,7 +65,7 @@ def _rivals(shown: Shown, number: int, followed: PersonMask | None) -> list[Pers
     return [mask for mask in masks if mask is not None]
 
 
-def _observation(seen: Seen, landmarks: Landmarks | None, track: int) -> Observation | None:
+def _observation(seen: Seen, shown: LandmarkResult, track: int) -> Observation | None:
     """A person with a silhouette; None without one."""
     if seen.box is None:
         return None
@@ -78,5 +78,6 @@ def _observation(seen: Seen, landmarks: Landmarks | None, track: int) -> Observa
         box=seen.box,
         area_px=seen.area_px,
         cut=seen.cut,
-        landmarks=landmarks,
+        landmarks=shown.landmarks,
+        carried=shown.carried,
     )
