@@ -54,11 +54,14 @@ class LoadShedder:
         """The reports at the end of that many frames; none where few were affected."""
         cure = "give this machine fewer rooms, a smaller size or fewer frames a second"
         left_out = (
-            (self.frames, "came too late to be looked into, only their outlines were told"),
-            (self.in_turn, "came late: people were looked at in turn, the others carried on"),
+            (self.frames, "frames came too late to be looked into, only their outlines were told"),
+            (
+                self.in_turn,
+                "frames came late: people were looked at in turn, the others carried on",
+            ),
         )
         return tuple(
-            f"{count} of {frames} frames {what}: {cure}"
+            f"{count} of {frames} {what}: {cure}"
             for count, what in left_out
             if count > TOLD * frames
         )
