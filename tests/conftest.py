@@ -32,13 +32,19 @@ LONGEST: Final = (
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
-    """A file without a mark that is asked for is not imported: most have no slow test."""
+    """A file without a mark that is asked for is not imported: most have no slow test.
+
+    Nor is one that is slow as a whole where slow ones are left out: those import torch, 7 s.
+    """
     asked: str = config.option.markexpr
-    marks = [] if " or " in asked else [each for each in asked.split(" and ") if each in MARKS]
-    if not marks or collection_path.suffix != ".py":
+    parts = [] if " or " in asked else asked.split(" and ")
+    marks = [each for each in parts if each in MARKS]
+    left_out = [mark for mark in MARKS if f"not {mark}" in parts]
+    if not (marks or left_out) or collection_path.suffix != ".py":
         return None
     text = collection_path.read_text()
-    return any(f"mark.{mark}" not in text for mark in marks) or None
+    lacks = any(f"mark.{mark}" not in text for mark in marks)
+    return lacks or any(f"\npytestmark = pytest.mark.{mark}\n" in text for mark in left_out) or None
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -22,6 +22,7 @@ def test_what_is_up_there_is_up_here_and_left_stays_left() -> None:
     assert upright(left_ahead_above).tolist() == [[1.0, 3.0, 2.0]]
 
 
+@pytest.mark.slow
 def test_every_vertex_hangs_on_bones_wholly() -> None:
     pytest.importorskip("anny", reason="Anny's people need the extra `train`")
     known = anatomy()
@@ -30,6 +31,7 @@ def test_every_vertex_hangs_on_bones_wholly() -> None:
     assert all(above < i for i, above in enumerate(known.parents))
 
 
+@pytest.mark.slow
 def test_the_coarser_surface_still_closes() -> None:
     """Nearly: where cells merge, few edges have another number of faces than two."""
     pytest.importorskip("anny", reason="Anny's people need the extra `train`")

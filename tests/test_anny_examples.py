@@ -9,6 +9,8 @@ from common.body.body import JOINT_NAMES
 from synth.anny_people.anny_examples import anny_examples
 from synth.picture.picture_examples import PICTURES, SIDE_PX, PictureExample, picture_examples
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def shown() -> list[PictureExample]:

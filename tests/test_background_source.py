@@ -80,6 +80,7 @@ def test_somebody_in_the_opening_frames_is_noticed(
     assert of_a_film == odd.replace("cameras.cam1.background", "--background")
 
 
+@pytest.mark.slow
 def test_who_stays_all_through_is_known_from_the_first_frame(
     clip: Path, decoder: Decoder, tmp_path: Path
 ) -> None:

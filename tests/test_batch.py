@@ -30,6 +30,7 @@ from tritrack.commands.clip_commands import line_of_runs
 VIEWS: tuple[tuple[ViewerNumber, ...], ...] = ((1, 2), (1,))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("views", VIEWS)
 def test_a_clip_that_shows_nobody_is_tracked_and_that_is_said(
     clip: Path, tmp_path: Path, views: tuple[ViewerNumber, ...]

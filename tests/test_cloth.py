@@ -10,6 +10,8 @@ from synth.anny_people.figures import anny_figure
 from synth.person.people import Look, person
 from synth.person.rings import MATERIAL, MATERIALS
 
+pytestmark = pytest.mark.slow
+
 FIGURE = anny_figure(np.random.default_rng(6))
 PLAIN = person(2).look._replace(
     sleeve="long", shorts=False, hair="short", loose_top_m=0.01, loose_legs_m=0.01, hem_m=0.0

@@ -8,6 +8,8 @@ pytest.importorskip("anny", reason="Anny's people need the extra `train`")
 from synth.anny_people.anatomy import anatomy
 from synth.anny_people.figures import Figure, anny_figure
 
+pytestmark = pytest.mark.slow
+
 HEIGHTS = {"lowerleg01.L": 0.285, "upperleg01.L": 0.53, "foot.L": 0.039}
 """Of knee, hip and ankle over the stature. Source: Drillis and Contini 1966."""
 LENGTHS = {("upperarm01.L", "lowerarm01.L"): 0.156, ("lowerarm01.L", "wrist.L"): 0.146}

@@ -11,6 +11,8 @@ from synth.anny_people.limb_regions import regions
 from synth.person.people import Hair
 from synth.person.rings import MATERIAL
 
+pytestmark = pytest.mark.slow
+
 CUTS: tuple[Hair, ...] = ("bald", "short", "bob", "tail")
 
 

@@ -178,6 +178,7 @@ for compiled in (camera._on_plane, kinematics.place_limbs, proportions.attached)
 """
 
 
+@pytest.mark.slow
 def test_a_rehearsal_compiles_what_draws_a_body() -> None:
     """In a process of its own: the first body of a live run is shown in time."""
     told = subprocess.run(

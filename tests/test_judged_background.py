@@ -46,6 +46,7 @@ def test_a_background_with_somebody_in_it_gives_way_to_the_empty_room() -> None:
         assert best_of(groups, frames, looks, EMPTY) is right
 
 
+@pytest.mark.slow
 def test_each_background_is_judged_once(monkeypatch: pytest.MonkeyPatch) -> None:
     """Of a group all are, though the first is good."""
     empty, frames, _ = film()

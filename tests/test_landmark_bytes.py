@@ -10,8 +10,9 @@ from viewer.landmarks.landmark_looks import opened
 torch = pytest.importorskip("torch", reason="the extra `train` is not installed")
 pytest.importorskip("onnx", reason="the extra `train` is not installed")
 
+pytestmark = pytest.mark.slow
 
-@pytest.mark.slow
+
 def test_a_network_in_bytes_sees_nearly_the_same_in_half_the_space(tmp_path: Path) -> None:
     from lab.landmark_lessons.landmark_bytes import write_in_bytes
     from lab.landmark_lessons.landmark_file import weights_of, write_network

@@ -298,6 +298,7 @@ def drawn_rays(seed: int) -> Rays:
     return found._replace(confidence=sure, others=others, others_confidence=second)
 
 
+@pytest.mark.slow
 def test_each_joint_is_looked_for_with_both_sides_of_either_view() -> None:
     """`most_probable` of what is said of it, joint by joint, for all that may be exchanged."""
     seen, rng = drawn_rays(1), np.random.default_rng(2)

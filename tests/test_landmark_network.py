@@ -255,6 +255,7 @@ def test_what_a_look_tells_is_put_where_it_belongs(
     assert found.mask is mask
 
 
+@pytest.mark.slow
 def test_a_second_look_in_the_mirror_has_left_where_left_is() -> None:
     """What is seen of a picture and of its mirror image, joined, is one thing: mirrored itself."""
     picture, mask = acted()[0].frames[0], acted()[0].masks[0]

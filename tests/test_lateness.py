@@ -126,6 +126,7 @@ def test_both_views_move_most_alike_where_they_show_one_instant(
     assert frames in promising(shown.first, shown.second, steps, PERIOD_S)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("frames", [-700, -9, 0, 330])
 def test_a_view_of_a_long_clip_is_found_as_by_trying_all_with_few_fits(
     long_walk: Sighting, frames: int, monkeypatch: pytest.MonkeyPatch

@@ -8,6 +8,8 @@ pytest.importorskip("anny", reason="Anny's people need the extra `train`")
 from synth.anny_people.figures import anny_figure
 from synth.anny_people.limb_regions import NOWHERE, regions
 
+pytestmark = pytest.mark.slow
+
 
 def test_places_along_limbs_grow_from_the_trunk_to_their_ends() -> None:
     figure = anny_figure(np.random.default_rng(4))

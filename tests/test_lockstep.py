@@ -82,6 +82,7 @@ def test_the_order_of_clips_does_not_change_one(
         np.testing.assert_array_equal(after[name], values, err_msg=name)
 
 
+@pytest.mark.slow
 def test_a_view_that_ends_early_leaves_the_other_to_go_on(clip: Path, tmp_path: Path) -> None:
     folder = copied(clip, tmp_path / "clip")
     refilmed(folder, lambda film: film[:40], cameras=(2,))
@@ -127,6 +128,7 @@ def test_the_stressed_clip_has_a_row_for_each_of_camera_1s_frames(data_dir: Path
     assert facts["warnings"] == []
 
 
+@pytest.mark.slow
 def test_every_nth_frame_keeps_its_number_and_time(clip: Path) -> None:
     with Decoders() as decoders:
         rows = poses(track_clip(Settings(clip=str(clip), every=2), decoders).bodies)

@@ -149,6 +149,7 @@ def test_the_guide_carries_the_scale_of_where_the_body_is() -> None:
     assert factors == pytest.approx([4.0 / 3.5, 4.0 / 4.3], rel=0.03)
 
 
+@pytest.mark.slow
 def test_a_raised_hand_does_not_change_the_scale() -> None:
     """P29: the highest pixel is the hand then; T' / T "is not usable" (section 4.2)."""
     stage = after_opening(Stage())
@@ -210,6 +211,7 @@ def test_a_body_that_fits_nothing_is_predicted_then_lost_then_found() -> None:
     assert errors_m(again, standing()).mean() < 0.12
 
 
+@pytest.mark.slow
 def test_one_view_that_never_believed_anybody_is_lost_at_once() -> None:
     """A door that opens where nobody was; a body that was believed is predicted for a while."""
     banner = NOBODY.copy()

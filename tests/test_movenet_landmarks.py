@@ -10,6 +10,8 @@ from viewer.landmarks.keypoint_layouts import POINT
 
 torch = pytest.importorskip("torch", reason="the extra `train` is not installed")
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def network() -> Any:

@@ -12,6 +12,8 @@ from synth.picture.picture_examples import SIDE_PX, PictureExample, picture_exam
 from viewer.landmarks.keypoint_layouts import POINT
 
 torch = pytest.importorskip("torch", reason="the extra `train` is not installed")
+
+pytestmark = pytest.mark.slow
 SHARED = [name for name in JOINT_NAMES if name in POINT]
 """Joints of ours that are points of COCO too."""
 

@@ -12,6 +12,8 @@ import pytest
 onnx = pytest.importorskip("onnx", reason="the extra `train` is not installed")
 pytest.importorskip("torch", reason="the extra `train` is not installed")
 
+pytestmark = pytest.mark.slow
+
 STEM = "a/Conv1_relu/Relu6"
 RNG = np.random.default_rng(8)
 ENDS = (

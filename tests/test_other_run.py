@@ -76,6 +76,7 @@ def test_both_commands_leave_the_other_run_as_it_is(clip: Path, tmp_path: Path) 
     assert {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()} == before
 
 
+@pytest.mark.slow
 def test_a_run_that_is_made_again_or_by_force_takes_the_others_place(
     clip: Path, tmp_path: Path
 ) -> None:

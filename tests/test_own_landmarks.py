@@ -86,6 +86,7 @@ def off(found: Landmarks | None) -> float:
     )
 
 
+@pytest.mark.slow
 def test_a_silhouette_that_is_a_guess_is_shown_to_the_network_only_where_no_person_is_known(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

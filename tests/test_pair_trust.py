@@ -39,6 +39,7 @@ def test_a_good_rig_is_believed_by_all_pairs() -> None:
     assert advice_of(found, RIG, SHOWN, PERIOD_S, ON_TIME, 0.0) == ""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("wrong", "fault"),
     [(0, turned), (1, moved), (2, turned), (3, moved)],

@@ -204,6 +204,7 @@ def test_who_stays_in_the_room_is_in_every_picture(people: int, cameras: int) ->
     assert stayed
 
 
+@pytest.mark.slow
 @given(st.integers(0, 50))
 @settings(max_examples=8, deadline=None)
 def test_a_seed_is_one_scene_and_another_is_another(seed: int) -> None:

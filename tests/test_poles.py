@@ -126,6 +126,7 @@ def test_a_pixel_spoils_the_distance_by_what_the_requirements_say(
     assert sorted(got) == pytest.approx(bounds_m, abs=0.06)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("size", "focals", "places", "taped"),
     [

@@ -28,6 +28,7 @@ SEEN = Look(
 )
 
 
+@pytest.mark.slow
 def test_untaught_people_are_found_to_a_few_centimetres() -> None:
     """Twelve performances, half of them joined late, turned, or seen by one camera for a while."""
     missed = []

@@ -216,6 +216,7 @@ def test_a_body_that_turns_about_is_followed_by_all_its_joints() -> None:
     assert np.mean(np.abs(off) < 45.0) > 0.95
 
 
+@pytest.mark.slow
 def test_what_is_sure_is_near_and_what_is_not_is_less_often() -> None:
     """In free motion, where two outlines leave many an arm open."""
     did, stage = shown("free"), default()

@@ -300,6 +300,7 @@ def dev_recordings(folder: Path) -> list[Recording]:
     return recordings
 
 
+@pytest.mark.slow
 def test_true_angles_of_unseen_people_reach_the_papers_rate(data_dir: Path) -> None:
     """P59: 332 of 360 or better; each of three people named by models of the other two."""
     people = folds(dev_recordings(data_dir / "dev"))

@@ -202,6 +202,7 @@ def test_a_clip_reads_back(folder: Path) -> None:
         assert np.isfinite(truth["joints3d"][present]).all()
 
 
+@pytest.mark.slow
 def test_truth_has_the_arrays_of_the_development_clips(folder: Path, data_dir: Path) -> None:
     theirs = np.load(next((data_dir / "dev").glob("*_15_*/truth.npz")))
     ours = np.load(folder / "s00_t1_15_kick_left_side" / "truth.npz")

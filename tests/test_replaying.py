@@ -49,6 +49,7 @@ def test_recorded_reports_give_the_same_bodies_byte_for_byte(run: Path, tmp_path
     assert np.array_equal(before["joints_m"], again["joints_m"], equal_nan=True)
 
 
+@pytest.mark.slow
 def test_what_is_replayed_takes_the_place_of_another_run_only_by_force(
     run: Path, tmp_path: Path
 ) -> None:

@@ -13,6 +13,8 @@ from synth.motion.footing import posed
 from synth.person.people import person
 from synth.person.skeleton import ANGLES, JOINTS
 
+pytestmark = pytest.mark.slow
+
 LIMBS = [("shoulder", "elbow"), ("elbow", "wrist"), ("hip", "knee"), ("knee", "ankle")]
 FIGURE = anny_figure(np.random.default_rng(1))
 SOMEONE = person(100_001)

@@ -65,6 +65,7 @@ def test_a_rig_that_is_right_is_believed() -> None:
     assert (trust.believed, trust.odd, advice) == (True, (), "")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("wrong", "late_frames", "named"),
     [

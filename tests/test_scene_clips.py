@@ -144,6 +144,7 @@ def test_rows_are_by_frame_then_person_and_each_persons_are_their_own_truth() ->
     assert together(each[:1]) is each[0]
 
 
+@pytest.mark.slow
 def test_a_scene_is_a_clip_with_a_truth_of_each(folder: Path) -> None:
     rig, truth = load_rig(folder.parent / "calibration.json"), np.load(folder / "truth.npz")
     assert [camera.name for camera in rig.cameras] == ["cam1", "cam2", "cam3"]
@@ -182,6 +183,7 @@ def test_a_seed_is_the_same_bytes_twice(folder: Path, tmp_path: Path) -> None:
         assert (again / name).read_bytes() == (folder / name).read_bytes()
 
 
+@pytest.mark.slow
 def test_each_may_be_shown_alone_too_with_the_same_motion_room_and_noise(tmp_path: Path) -> None:
     scene, *each = write_scenes(tmp_path, SceneSet(2, 3.0, 1, 5, 3, alone=True), SIZE)
     assert [one.name for one in each] == [f"{scene.name}_alone{who}" for who in (0, 1)]

@@ -76,6 +76,7 @@ def test_the_size_of_the_picture_does_not_matter() -> None:
     assert np.abs(large - small).mean() < 0.015
 
 
+@pytest.mark.slow
 @given(st.floats(-25.0, 25.0))
 @settings(max_examples=15, deadline=None)
 def test_a_rolled_camera_shows_the_same_window(roll_deg: float) -> None:

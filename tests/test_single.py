@@ -91,6 +91,7 @@ def test_the_camera_that_was_assumed_is_told_and_shows_the_joints_where_they_are
     assert np.abs(shown - joints_px[seen, :15]).max() < 0.01
 
 
+@pytest.mark.slow
 def test_one_view_of_a_clip_is_tracked_by_the_same_code(
     run: Path, video: Path, tmp_path: Path
 ) -> None:
@@ -116,6 +117,7 @@ def test_the_notes_beside_a_video_are_obeyed(video: Path, tmp_path: Path) -> Non
     assert facts["clips"]["waving"]["effort"]["inputs"]["orientation"] == 1
 
 
+@pytest.mark.slow
 def test_a_film_whose_rate_varies_is_told_in_true_time(video: Path, tmp_path: Path) -> None:
     """Each third frame is missing: poses keep their moments, the overlay its length."""
     ticks = [n for n in range(40) if n % 3]
@@ -129,6 +131,7 @@ def test_a_film_whose_rate_varies_is_told_in_true_time(video: Path, tmp_path: Pa
     assert lasts_s == pytest.approx((ticks[-1] - ticks[0] + 1) / 15, abs=0.1)
 
 
+@pytest.mark.slow
 def test_an_empty_picture_is_the_background_where_it_is_given(video: Path, tmp_path: Path) -> None:
     """Of somebody who never leaves a film alone does not tell what is behind."""
     pictures = film_of(video)
@@ -194,6 +197,7 @@ def test_of_several_videos_the_good_ones_are_followed_and_said(
     assert (tmp_path / "my runs" / "a wave" / "overlay.mp4").is_file()
 
 
+@pytest.mark.slow
 def test_a_camera_that_moves_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """T2: a static background."""
     scene = np.random.default_rng(5).integers(0, 255, (30, 120, 3), np.uint8)

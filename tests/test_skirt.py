@@ -8,6 +8,8 @@ pytest.importorskip("anny", reason="Anny's people need the extra `train`")
 from synth.anny_people.anatomy import anatomy
 from synth.anny_people.skirt import NARROWER, tube_about
 
+pytestmark = pytest.mark.slow
+
 ROOM_M = 0.02
 
 

@@ -358,6 +358,7 @@ def test_a_clip_that_is_not_read_to_its_end_is_written_as_far_as_it_goes(
         assert np.isfinite(found["joints_m"]).all(axis=(1, 2)).any()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("command", ["track", "single"])
 def test_a_clip_that_shows_nobody_is_not_followed_and_is_written(
     tritrack: Commands, clip: Path, tmp_path: Path, command: str

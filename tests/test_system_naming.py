@@ -81,6 +81,7 @@ def test_the_posture_is_named_of_a_person_that_no_model_was_trained_on(clip: Pat
     assert named(clip) == "raise_right_lateral"
 
 
+@pytest.mark.slow
 def test_what_ends_with_the_clip_is_told_when_the_recognizer_ends(clip: Path) -> None:
     """By the process itself, after the last body: the arm is still up there."""
     bodies, bus, stop = tracked(clip), LocalBus(), threading.Event()

@@ -259,6 +259,7 @@ MADE: dict[str, tuple[Callable[[], Any], float, tuple[float, float, float]]] = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", MADE)
 def test_a_seed_makes_what_it_made_when_networks_were_trained_on_it(name: str) -> None:
     make, off, before = MADE[name]

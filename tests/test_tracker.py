@@ -139,6 +139,7 @@ def test_a_background_is_images_or_none_at_all() -> None:
         Tracker(background="room")  # type: ignore[arg-type]
 
 
+@pytest.mark.slow
 def test_one_camera_needs_no_calibration_and_an_image_may_be_given_alone(
     films: list[list[Image]],
 ) -> None:
@@ -274,6 +275,7 @@ class FrameCache:
         return self.images
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("learns", [True, False], ids=["learnt", "given"])
 def test_a_program_may_read_all_images_into_the_same_arrays(
     clip: Path, films: list[list[Image]], learns: bool
@@ -295,6 +297,7 @@ def test_a_program_may_read_all_images_into_the_same_arrays(
     assert got[0][-1].views == "both"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("stage", ["looked", "joined", "recognizer.step", "viewer_of"])
 def test_an_instant_that_is_interrupted_may_be_given_again(
     clip: Path, films: list[list[Image]], stage: str, monkeypatch: pytest.MonkeyPatch
