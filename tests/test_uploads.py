@@ -1,10 +1,14 @@
 """Dropped files piece by piece: what comes whole, what is refused, what is left behind."""
 
 import os
+import subprocess
+import sys
 from pathlib import Path
 from types import SimpleNamespace
 
+import psutil
 import pytest
+from waiting import until
 
 from animator.start.wishes import Begin, Chunk
 from common.bus.messages import MOST_VIEWS
@@ -201,6 +205,21 @@ def test_two_pages_never_work_in_one_folder(tmp_path: Path) -> None:
     for stale in ("999999999", "", "no number"):
         (folder / OWNER).write_text(stale)
         Uploads(folder)
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="this system keeps no dead processes")
+def test_a_page_that_was_killed_and_not_waited_for_is_gone(tmp_path: Path) -> None:
+    """As in a container, whose first process waits for none."""
+    folder = tmp_path / "uploads"
+    folder.mkdir()
+    killed = subprocess.Popen([sys.executable, "-c", "input()"], stdin=subprocess.PIPE)
+    (folder / OWNER).write_text(str(killed.pid))
+    with pytest.raises(UploadRefused, match="another start page"):
+        Uploads(folder)
+    killed.kill()
+    assert until(lambda: psutil.Process(killed.pid).status() == psutil.STATUS_ZOMBIE)
+    Uploads(folder).close()
+    killed.communicate()
 
 
 def test_a_folder_that_cannot_be_written_is_named(tmp_path: Path) -> None:

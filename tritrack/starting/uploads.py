@@ -102,7 +102,9 @@ def refuse_other_page(folder: Path) -> None:
     owner = folder / OWNER
     try:
         number, began_s = int(owner.read_text()), owner.stat().st_mtime
-        is_there = number != os.getpid() and psutil.Process(number).create_time() <= began_s
+        other = psutil.Process(number)
+        is_there = number != os.getpid() and other.create_time() <= began_s
+        is_there = is_there and other.status() != psutil.STATUS_ZOMBIE  # killed, and not waited for
     except (OSError, ValueError, psutil.Error):
         return
     if is_there:
