@@ -10,7 +10,21 @@ import pytest
 from spoiling import film_of, write_video
 from waiting import until
 
-from animator.start.wishes import Again, Compare, Delete, Demo, Report, Task, Wish, Work
+from animator.page.wish_page import Told
+from animator.start.sections import Tray
+from animator.start.wishes import (
+    Again,
+    Begin,
+    Chunk,
+    Compare,
+    Delete,
+    Demo,
+    Drop,
+    Report,
+    Task,
+    Wish,
+    Work,
+)
 from tritrack.starting.job_plan import Dropped, Known, Plan, kept_calibration, planned
 from tritrack.starting.job_queue import Job, JobQueue
 from tritrack.starting.start_desk import Given, StartDesk
@@ -25,18 +39,21 @@ WORK_S = 400.0
 class Page:
     """Keeps what it is given to show."""
 
-    def __init__(self, *wishes: Wish) -> None:
+    def __init__(self, *wishes: Wish | Chunk) -> None:
         self.told: list[str] = []
+        self.faults: list[str] = []
         self._wishes = list(wishes)
 
-    def next_wish(self) -> Wish | None:
+    def next_wish(self) -> Wish | Chunk | None:
         return self._wishes.pop(0) if self._wishes else None
 
     def show(self, section: Any) -> None:
-        """Not looked at here."""
+        if isinstance(section, Tray):
+            self.faults = [file.fault for file in section.files]
 
     def tell(self, message: Any) -> None:
-        self.told.append(message.text)
+        if isinstance(message, Told):
+            self.told.append(message.text)
 
 
 def test_a_result_that_cannot_be_kept_is_told_and_the_page_goes_on(tmp_path: Path) -> None:
@@ -70,6 +87,18 @@ def test_what_a_job_needs_is_not_deleted(tmp_path: Path) -> None:
     desk.turn(page)  # type: ignore[arg-type]
     assert page.told == ["room is deleted"]
     assert not rig.exists()
+    desk.close()
+
+
+def test_a_file_that_was_there_twice_is_good_once_the_other_is_taken_away(tmp_path: Path) -> None:
+    desk, content = StartDesk(Given(tmp_path / "runs")), b"no video, but twice the same"
+    wishes: list[Wish | Chunk] = []
+    for number in (1, 2):
+        wishes.append(Begin(number, f"{number}.avi", len(content)))
+        wishes.append(Chunk(number, 0, memoryview(content)))
+    page, later = Page(*wishes), Page(Drop(1))
+    assert until(lambda: turned(desk, page) and "the same file" in "".join(page.faults))
+    assert until(lambda: turned(desk, later) and "gives no picture" in "".join(later.faults))
     desk.close()
 
 
