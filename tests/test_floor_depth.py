@@ -101,6 +101,16 @@ def test_who_was_seen_by_two_views_does_not_jump_when_one_is_left() -> None:
     assert known(CAMERA, body.joints_m).depth_m == pytest.approx(memory.depth_m)
 
 
+def test_a_depth_that_was_quite_wrong_is_given_up_within_three_instants() -> None:
+    """As of a body that was on another person; a moment's outlier is believed by half."""
+    memory, off_m = known(CAMERA, STANDING_M), []
+    for _ in range(3):
+        memory, _ = step(memory, sight_of(None), away(1.5))
+        off_m.append(memory.depth_m - DEPTH_M)
+    assert 0.5 < off_m[0] < 0.9
+    assert off_m[-1] > 1.1
+
+
 def test_a_depth_that_stays_elsewhere_is_believed_within_a_second() -> None:
     memory = known(CAMERA, STANDING_M)
     for _ in range(15):
@@ -112,6 +122,8 @@ def test_a_depth_that_stays_elsewhere_is_believed_within_a_second() -> None:
 def test_a_floor_that_is_assumed_does_not_count(on_floor: bool) -> None:
     sight = sight_of(landmarks(STANDING_M), on_floor=on_floor)
     begun = single_view.begun(sight, STANDING_M)
+    assert begun.place is not None
+    assert begun.place.depth_m == pytest.approx(DEPTH_M)
     assert (single_view.step(None, begun, sight).alone.place is not begun.place) == on_floor
 
 

@@ -133,6 +133,19 @@ def test_rays_through_the_marks_of_a_body_are_moved_through_its_joints(yaw_deg: 
     assert off_m(seen, true_m).max() > 0.03
 
 
+def test_at_the_first_instant_the_proposed_pose_tells_where_marks_are() -> None:
+    """Its bends are little farther inside than the body's."""
+    true_m = walking()
+    seen = rays_at(true_m + STATURE_M * joint_marks.marks(true_m))
+    proposed_m = true_m + STATURE_M * joint_marks.bent(true_m, *joint_marks.PROPOSED_INSIDE)
+    found_m, moved = joint_marks.centred(None, proposed_m, seen, STATURE_M)
+    proposed_off_m, found_off_m = (
+        float(np.linalg.norm(each - true_m, axis=1).max()) for each in (proposed_m, found_m)
+    )
+    assert found_off_m < 0.4 * proposed_off_m
+    assert off_m(moved, true_m).max() < 0.4 * off_m(seen, true_m).max()
+
+
 def off_m(seen: Rays, places_m: np.ndarray) -> np.ndarray:
     away = places_m - seen.centres_m[:, None]
     along = (away * seen.directions).sum(axis=2, keepdims=True)

@@ -33,7 +33,7 @@ from common.body.kinematics import joints
 from common.body.proportions import body_vector, stature
 from common.bus.instant import Instant
 from common.bus.message_codec import decode, encode
-from common.bus.messages import Guide
+from common.bus.messages import Guide, ScaleSource
 from common.config.settings import Settings
 from common.method import DEFAULT, Mode
 from common.rig.camera import project
@@ -234,6 +234,17 @@ def test_who_is_partly_outside_the_only_picture_is_tracked_and_guessed_outside()
     assert told.body.status == "tracking"
     sure = dict(zip(JOINT_NAMES, told.body.confidence, strict=True))
     assert sure["l_ankle"] == sure["r_ankle"] == 0.0 < sure["neck"]
+
+
+@pytest.mark.parametrize("source", ["calibrated", "person", "assumed"])
+def test_the_floor_of_a_calibrated_rig_is_known(source: ScaleSource) -> None:
+    stage = Stage(views=(1,))
+    stage.state = stage.state._replace(scale_source=source)
+    stage.show([standing()] * 2)
+    found = stage.state.person.found
+    assert found is not None
+    assert found.alone is not None
+    assert (found.alone.place is not None) == (source != "assumed")
 
 
 @pytest.mark.parametrize("silent", [0, 1])

@@ -3,8 +3,10 @@
 import numpy as np
 import pytest
 from crowd_of_two import BLUE, LEFT_M, RED, RIGHT_M, Crowd, shown
+from staging import PERSON
 
 from common.bus.messages import Body
+from integrator.measuring.known_body import Measured
 from integrator.people.lived_instant import KEPT_S
 from integrator.people.recognition import State
 from runtime.unfinished.state_codec import packed, unpacked
@@ -87,3 +89,43 @@ def test_a_saved_state_goes_on_to_the_same_bodies() -> None:
     again = Crowd(people=1)
     again.state, again.n = unpacked(packed(crowd.state), State), crowd.n
     assert again.see(OWN, OTHER) == crowd.see(OWN, OTHER)
+
+
+def with_body(crowd: Crowd, number: int) -> None:
+    """The state in which one of the people was measured in the opening posture."""
+    measured = Measured(PERSON, (RIGHT_M[0], 1.0, RIGHT_M[1]))
+    first, other = crowd.state.lives
+    assert other.number == number
+    person = other.state.person._replace(body=measured)
+    other = other._replace(state=other.state._replace(person=person))
+    crowd.state = crowd.state._replace(lives=(first, other))
+
+
+def test_who_performs_the_opening_posture_is_followed_once_the_other_is_long_gone() -> None:
+    """They may be the same person in other clothes, who is lost for ever otherwise."""
+    crowd = follower()
+    crowd.last(SECOND, OTHER)
+    with_body(crowd, 2)
+    soon = crowd.last(round((KEPT_S - 1.5) * SECOND), OTHER)
+    assert [body.status for body in soon] == ["lost"]
+    crowd.last(SECOND, OTHER)
+    assert is_at(crowd.last(SECOND, OTHER), RIGHT_M)
+    assert crowd.see(OTHER)[0].person == 0
+    assert [life.number for life in crowd.state.lives] == [1]
+
+
+def test_others_who_are_gone_are_forgotten() -> None:
+    crowd = follower()
+    assert len(crowd.state.lives) == 2
+    crowd.last(round((KEPT_S - 1.0) * SECOND), OWN)
+    assert len(crowd.state.lives) == 2
+    crowd.last(2 * SECOND, OWN)
+    assert [life.number for life in crowd.state.lives] == [1]
+
+
+def test_an_assumed_rig_does_not_tell_people_apart() -> None:
+    """Whoever the views show is the one person."""
+    crowd = follower()
+    room = crowd.state.room._replace(scale_source="assumed")
+    crowd.state = crowd.state._replace(room=room)
+    assert is_at(crowd.last(SECOND, OTHER), RIGHT_M)

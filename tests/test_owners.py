@@ -18,6 +18,7 @@ from integrator.people.known_life import Life
 from integrator.people.observation_cost import (
     AWAY_S,
     NEAR_M,
+    OTHER_CLOTHES,
     UNLIKE,
     cost_of,
     hidden_shares,
@@ -183,6 +184,18 @@ def test_who_is_out_of_sight_may_be_farther_but_not_in_other_clothes() -> None:
     assert cost_of(camera, 0, near, other, 1.0) < 1.0, "light changes colours"
 
 
+def test_colours_of_another_camera_may_differ_more_than_a_cameras_own() -> None:
+    """.1 to .4 for one person in two cameras, .05 in one."""
+    lighter = (RED[0] + 28.0, *RED[1:3], RED[3] + 28.0, *RED[4:])
+    seen = msgspec.structs.replace(FIRST[0], colours=lighter)
+    assert OTHER_CLOTHES < colour_distance(RED, seen.colours) < UNLIKE
+    later_s = 1.0 + 2 * AWAY_S
+    own = life(1, LEFT_M, RED)
+    others = own._replace(colours=((), RED))
+    assert cost_of(RIG.cameras[0], 0, own, seen, later_s) == np.inf
+    assert cost_of(RIG.cameras[0], 0, others, seen, later_s) < 1.0
+
+
 def test_the_viewers_number_decides_between_two_as_near() -> None:
     one, two = life(1, LEFT_M), life(1, LEFT_M)._replace(tracks=(4, 4))
     seen = FIRST[0]
@@ -244,6 +257,12 @@ def test_who_stands_behind_another_is_hidden_in_that_view_alone() -> None:
     assert shown_whole == 0.0
     assert hidden_shares(RIG.cameras[1], [far, near]).max() < 0.4
     assert hidden_shares(RIG.cameras[0], [far, None]).tolist() == [0.0, 0.0]
+
+
+def test_two_in_one_place_hide_neither() -> None:
+    """They may be one person: a sixth of a metre of depth is within the error of one view."""
+    near = [life(n, (0.0, 0.15 * n)).joints_m for n in range(2)]
+    assert hidden_shares(RIG.cameras[0], near).tolist() == [0.0, 0.0]
 
 
 def test_the_one_person_whom_a_view_shows_of_two_in_line_is_the_nearer() -> None:

@@ -43,11 +43,13 @@ def test_a_person_alone_is_there_at_once_and_an_empty_room_has_one_empty_body() 
     assert [body.person for body in crowd.see(LEFT)] == [1]
 
 
-def test_a_second_person_must_be_shown_for_a_third_of_a_second() -> None:
+@pytest.mark.parametrize("tracks", [(1, 1), (1, -1), (-1, 1)])
+def test_a_second_person_must_be_shown_for_a_third_of_a_second(tracks: tuple[int, int]) -> None:
+    """By one view or both: at 15 Hz the sixth instant is a third of a second after the first."""
     crowd = Crowd()
     crowd.see(LEFT)
-    counts = [len(crowd.see(LEFT, RIGHT)) for _ in range(AFTER_BIRTH)]
-    assert counts == [1] * (AFTER_BIRTH - 1) + [2]
+    counts = [len(crowd.see(LEFT, shown(RIGHT_M, tracks, BLUE))) for _ in range(6)]
+    assert counts == [1] * 5 + [2]
 
 
 def test_numbers_stay_where_a_viewer_exchanges_its_own() -> None:
@@ -181,7 +183,7 @@ def test_bodies_come_by_number_whoever_was_exchanged() -> None:
 
 
 def test_no_more_people_are_known_than_the_bound(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(recognition, "MOST", 1)
+    monkeypatch.setattr(recognition, "MOST_PEOPLE", 1)
     crowd = Crowd()
     crowd.see(LEFT)
     assert [body.person for body in crowd.last(2 * AFTER_BIRTH, LEFT, RIGHT)] == [1]

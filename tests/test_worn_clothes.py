@@ -5,7 +5,7 @@ import pytest
 from common.body.clothes import ALIKE, COLOUR_SCALE, colour_distance, exchange_gain
 from common.body.observation import Box, Landmarks, Observation
 from viewer.people.known_people import People, Track
-from viewer.people.worn_clothes import step
+from viewer.people.worn_clothes import NEW_SHARE, step
 
 RED, BLUE = (50.0, 60.0, 40.0) * 2, (40.0, 10.0, -60.0) * 2
 LEFT, RIGHT, OVER_LEFT = Box(10, 30, 20, 100), Box(60, 80, 20, 100), Box(20, 40, 20, 100)
@@ -38,6 +38,38 @@ def test_clothes_are_learnt_where_all_are_seen_apart() -> None:
     assert KNOWN.clothes[0].colours == pytest.approx(RED)
     assert met(seen(3, LEFT, RED), seen(5, OVER_LEFT, BLUE)).clothes == ()
     assert met(seen(3, LEFT, RED)).clothes == (), "the other may be behind them"
+
+
+def test_clothes_follow_the_light_by_a_fiftieth_a_frame_once_they_are_known() -> None:
+    """As a mean of all frames at first."""
+    darker = tuple(0.8 * each for each in RED)
+    two = met(seen(3, LEFT, RED), seen(5, RIGHT, BLUE), people=KNOWN._replace(clothes=()))
+    assert two.clothes == KNOWN.clothes
+    once, _ = step(two, (seen(3, LEFT, darker), seen(5, RIGHT, BLUE)))
+    assert once.clothes[0].colours == pytest.approx([r - 0.2 * r / 11 for r in RED])
+    assert once.clothes[0].frames == 11
+    old = two._replace(clothes=tuple(each._replace(frames=1000) for each in two.clothes))
+    later, _ = step(old, (seen(3, LEFT, darker), seen(5, RIGHT, BLUE)))
+    assert later.clothes[0].colours == pytest.approx([r - 0.2 * r * NEW_SHARE for r in RED])
+    assert later.clothes[1].colours == pytest.approx(BLUE)
+
+
+def test_clothes_without_colours_and_of_who_is_no_longer_known_are_not_kept() -> None:
+    people, _ = step(KNOWN, (seen(3, LEFT, ()), seen(5, RIGHT, BLUE)))
+    assert [each.frames for each in people.clothes] == [10, 11]
+    gone, _ = step(KNOWN._replace(tracks=(track(3),)), (seen(3, LEFT, RED),))
+    assert [each.number for each in gone.clothes] == [3]
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_one_above_the_other_is_apart(turned: bool) -> None:
+    """A balcony: the same columns of the picture, other rows."""
+    above, below = Box(10, 30, 10, 50), Box(15, 35, 51, 90)
+    boxes = (below, above) if turned else (above, below)
+    people = met(seen(3, boxes[0], RED), seen(5, boxes[1], BLUE))
+    assert [each.number for each in people.clothes] == [3, 5]
+    touching = Box(15, 35, 50, 90)
+    assert met(seen(3, above, RED), seen(5, touching, BLUE)).clothes == ()
 
 
 def test_two_who_wear_each_others_clothes_get_their_numbers_back() -> None:

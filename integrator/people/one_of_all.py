@@ -7,12 +7,16 @@ import msgspec
 from common.body.observation import Observation
 from common.bus.instant import Instant
 from integrator import merge, merge_state
-from integrator.people.known_life import NO_TRACK, after
-from integrator.people.lived_instant import Merged, ended, lived, of_one
+from integrator.measuring.known_body import Measured
+from integrator.people.known_life import NO_TRACK, Life, after
+from integrator.people.lived_instant import KEPT_S, Merged, ended, lived, of_one
 from integrator.people.recognition import State, born, recognised, seen_of
 from integrator.people.sight_gaps import People
 from integrator.rig import same_person
 from integrator.single.sight import Annotations
+
+Lives = tuple[Life, ...]
+"""By number, the followed one first."""
 
 
 def step(
@@ -41,10 +45,30 @@ def step(
         merged.append((*lived(life, own, seen_of(people, indices), now_s, inputs), own))
     merged.sort(key=lambda each: each[0].number)
     life, body, guide, own = merged[0]
-    state = state._replace(room=life.state, lives=tuple(each[0] for each in merged))
+    lives = _with_performer(tuple(each[0] for each in merged), now_s)
+    state = state._replace(room=lives[0].state, lives=lives)
     status = body.status if any(people) else "empty"
     body = msgspec.structs.replace(body, person=0, status=status)
     return _kept(state, now_s), Merged((body,), guide, own)
+
+
+def _with_performer(lives: Lives, now_s: float) -> Lives:
+    """The people, the followed one first: where they have been out of sight for KEPT_S, who was
+    measured in the opening posture is followed. That is a wish to be: the same person in other
+    clothes cannot be told from another."""
+    first, others = lives[0], lives[1:]
+    if first.unseen_s(now_s) <= KEPT_S:
+        return lives
+    performer = next((each for each in others if _performed(each, now_s)), None)
+    if performer is None:
+        return lives
+    rest = tuple(each for each in others if each is not performer)
+    return (performer._replace(number=first.number), *rest)
+
+
+def _performed(life: Life, now_s: float) -> bool:
+    """Whether a person in sight was measured in the opening posture."""
+    return life.seen_s == now_s and isinstance(life.state.person.body, Measured)
 
 
 def _kept(state: State, now_s: float) -> State:

@@ -6,6 +6,7 @@ from typing import Final, NamedTuple
 
 from common.body.observation import Observation
 from common.bus.instant import Instant
+from common.bus.messages import MOST_PEOPLE
 from integrator import merge_state
 from integrator.people import corrections, owners
 from integrator.people.corrections import Double, Swap, alone_in
@@ -14,8 +15,6 @@ from integrator.people.owners import Group
 from integrator.people.sight_gaps import Gap, with_instant
 from integrator.rig.undistortion import undistorted_instant, undistorted_rig
 
-MOST: Final = 6
-"""Upper bound of the number of people."""
 FIRST: Final = 1
 """The first person's number; 0 is that of a run that follows one person."""
 BORN_S: Final = 1.0 / 3.0
@@ -76,7 +75,7 @@ def recognised(state: State, instant: Instant, now_s: float) -> tuple[State, lis
         tracks = _tracks(people, group.indices)
         since_s = next((one.since_s for one in state.coming if one.tracks == tracks), now_s)
         shown_s = now_s - since_s + 0.5 * state.room.period_s
-        if shown_s < _wait_s(group, state) or len(lives) >= MOST:
+        if shown_s < _wait_s(group, state) or len(lives) >= MOST_PEOPLE:
             coming.append(Coming(tracks, since_s))
             continue
         lives.append(born(state.room, fresh, tracks, now_s))
