@@ -183,7 +183,7 @@ def test_bodies_come_by_number_whoever_was_exchanged() -> None:
 
 
 def test_no_more_people_are_known_than_the_bound(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(recognition, "MOST_PEOPLE", 1)
+    monkeypatch.setattr(recognition, "MOST", 1)
     crowd = Crowd()
     crowd.see(LEFT)
     assert [body.person for body in crowd.last(2 * AFTER_BIRTH, LEFT, RIGHT)] == [1]

@@ -15,6 +15,9 @@ from integrator.people.owners import Group
 from integrator.people.sight_gaps import Gap, with_instant
 from integrator.rig.undistortion import undistorted_instant, undistorted_rig
 
+MOST: Final = MOST_PEOPLE + 1
+"""Upper bound of the number of people who are known: as many as a scene has, and one who is out of
+sight and may come back."""
 FIRST: Final = 1
 """The first person's number; 0 is that of a run that follows one person."""
 BORN_S: Final = 1.0 / 3.0
@@ -75,7 +78,7 @@ def recognised(state: State, instant: Instant, now_s: float) -> tuple[State, lis
         tracks = _tracks(people, group.indices)
         since_s = next((one.since_s for one in state.coming if one.tracks == tracks), now_s)
         shown_s = now_s - since_s + 0.5 * state.room.period_s
-        if shown_s < _wait_s(group, state) or len(lives) >= MOST_PEOPLE:
+        if shown_s < _wait_s(group, state) or len(lives) >= MOST:
             coming.append(Coming(tracks, since_s))
             continue
         lives.append(born(state.room, fresh, tracks, now_s))
