@@ -12,7 +12,7 @@ from common.body.observation import Landmarks
 from viewer.landmarks.landmark_window import GREY, Window
 from viewer.landmarks.own_landmarks import look_in, window_of_joints
 from viewer.landmarks.person_mask import LandmarkResult
-from viewer.people.close_people import are_close, beside, cheapest, is_in, without
+from viewer.people.close_people import are_close, are_together, beside, cheapest, is_in, without
 from viewer.people.known_people import People, Track
 
 COSTS = st.integers(0, 4).flatmap(
@@ -81,6 +81,20 @@ def test_people_are_close_where_one_is_in_the_others_window() -> None:
     assert are_close(people(60.0, 100.0))
     assert not are_close(people(60.0, 260.0))
     assert not are_close(people(60.0))
+
+
+@pytest.mark.parametrize(
+    ("columns", "together"),
+    [((60.0, 80.0), True), ((60.0, 93.0), True), ((60.0, 95.0), False), ((60.0,), False)],
+    ids=["overlap", "a tenth of their height apart", "farther", "one person"],
+)
+def test_people_are_together_where_their_boxes_meet(
+    columns: tuple[float, ...], together: bool
+) -> None:
+    """Each is 24 pixels wide and 100 high."""
+    for order in (1, -1):
+        tracks = tuple(Track(n, figure(x), 0.0) for n, x in enumerate(columns[::order]))
+        assert are_together(People(tracks, 0, len(columns))) == together
 
 
 def right_share(look: LandmarkResult, own_px: Floats) -> float:

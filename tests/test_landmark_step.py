@@ -384,15 +384,30 @@ def test_of_two_who_are_close_the_one_who_is_not_due_is_carried_on(
 def test_of_people_who_are_close_a_report_does_not_wait_for_the_search(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """It is of every frame, and serves the next: a new person, and where each is."""
-    scene = Scene(monkeypatch, standing(100.0), standing(150.0))
+    """It is of every frame where they meet, and serves the next: a new person, and where each
+    is."""
+    scene = Scene(monkeypatch, standing(100.0), standing(135.0))
     monkeypatch.setattr(close_people, "look_in", scene._look_in)
     tracks = tuple(Track(n, each, 0.9) for n, each in enumerate(scene.people))
     state = State(People(tracks, 0, 2), 0.9, detected=())
     scene.people.append(standing(260.0))
     state, shown = step(state, frame(1.0), EMPTY, SETTINGS, alone=False)
     assert scene.searches == []
-    assert columns(shown) == pytest.approx([100.0, 150.0], abs=3.0)
+    assert columns(shown) == pytest.approx([100.0, 135.0], abs=3.0)
     state, shown = scene.step(state, 1.0 + 1 / 15)
-    assert columns(shown) == pytest.approx([100.0, 150.0, 260.0], abs=3.0)
+    assert columns(shown) == pytest.approx([100.0, 135.0, 260.0], abs=3.0)
     assert len(scene.searches) == 2
+
+
+@pytest.mark.parametrize(("second_px", "searches"), [(135.0, 9), (165.0, 2)])
+def test_of_people_who_are_close_and_do_not_meet_the_picture_is_searched_four_times_a_second(
+    monkeypatch: pytest.MonkeyPatch, second_px: float, searches: int
+) -> None:
+    """In 0.6 s."""
+    scene = Scene(monkeypatch, standing(100.0), standing(second_px))
+    monkeypatch.setattr(close_people, "look_in", scene._look_in)
+    tracks = tuple(Track(n, each, 1.0) for n, each in enumerate(scene.people))
+    state = State(People(tracks, 0, 2), 1.0)
+    for at in range(1, 10):
+        state, _ = scene.step(state, 1.0 + at / 15)
+    assert len(scene.searches) == searches

@@ -24,7 +24,14 @@ from viewer.landmarks.own_landmarks import (
 )
 from viewer.landmarks.person_mask import LandmarkResult, Shown
 from viewer.people import known_people, looks_in_turn
-from viewer.people.close_people import are_close, beside, cheapest, looked_at_alone, without
+from viewer.people.close_people import (
+    are_close,
+    are_together,
+    beside,
+    cheapest,
+    looked_at_alone,
+    without,
+)
 from viewer.people.known_people import PEOPLE, Look, People, corners_of, is_person
 from viewer.people.looks_in_turn import LastLook
 from viewer.people.people_detector import NETWORK, Detection, overlap, people_in
@@ -100,7 +107,7 @@ def step(
     carried = looks_in_turn.carried(state.looks, due, frame.captured_s)
     if not frame.hurried and are_close(people):
         looks, new = looked_at_alone(frame.picture, people, model, state.detected or (), carried)
-        state = _due(state, frame, 0.0)
+        state = _due(state, frame, 0.0 if are_together(people) else URGENT_S)
     else:
         looks, new = _looks(frame.picture, seen, people, model, carried), list[LandmarkResult]()
         is_first = state.searched_s == -math.inf

@@ -1,7 +1,7 @@
 """People who are close to each other in a picture: each is looked at with the others made grey."""
 
 from collections.abc import Mapping, Sequence
-from itertools import permutations
+from itertools import combinations, permutations
 from typing import Final
 
 import cv2
@@ -22,7 +22,8 @@ between two frames."""
 IS_NEAR: Final = 0.4
 """Median distance of a detection's joints from a known person's last ones, in the longer side of
 what holds them, from which on they are of another."""
-NEVER: Final = 1e9
+APART: Final = 0.1
+"""Distance of two people's boxes up to which they meet, in the longer side of either."""
 
 
 def cheapest(costs: Sequence[Sequence[float]], most: float) -> list[int | None]:
@@ -59,6 +60,16 @@ def are_close(people: People) -> bool:
     return any(
         window is not None and is_in(window, other)
         for (_, window), (other, _) in permutations(windows, 2)
+    )
+
+
+def are_together(people: People) -> bool:
+    """Whether the boxes of any two known people meet: one may be taken for the other."""
+    boxes = [corners_of(each.landmarks) for each in people.tracks]
+    return any(
+        bool((one[0] <= other[1] + APART * (other[1] - other[0]).max()).all())
+        and bool((other[0] <= one[1] + APART * (one[1] - one[0]).max()).all())
+        for one, other in combinations(boxes, 2)
     )
 
 
