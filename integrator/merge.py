@@ -238,7 +238,8 @@ def _lone(state: State, body: Known, now: Sighting) -> Posed:
     man = THESIS if method.stick_lifting else ADULT
     number = now.pair[place] + 1
     held = (filed.rig, person, man, body.bdp, state.person.pose, now.dt_s, now.annotations)
-    sight = Sight(method, place, *held, number, on_floor=state.scale_source != "assumed")
+    on_floor = state.settings.people == "all" and state.scale_source != "assumed"
+    sight = Sight(method, place, *held, number, on_floor=on_floor)
     alone = None if before is None else before.alone
     if alone is None or alone.number != number:
         alone = single_view.begun(sight, None if before is None else before.joints_m, alone)

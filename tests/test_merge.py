@@ -2,7 +2,7 @@
 
 from itertools import pairwise
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, Literal
 
 import msgspec
 import numpy as np
@@ -236,15 +236,25 @@ def test_who_is_partly_outside_the_only_picture_is_tracked_and_guessed_outside()
     assert sure["l_ankle"] == sure["r_ankle"] == 0.0 < sure["neck"]
 
 
-@pytest.mark.parametrize("source", ["calibrated", "person", "assumed"])
-def test_the_floor_of_a_calibrated_rig_is_known(source: ScaleSource) -> None:
+@pytest.mark.parametrize(
+    ("people", "source", "counts"),
+    [
+        ("all", "calibrated", True),
+        ("all", "person", True),
+        ("all", "assumed", False),
+        (1, "calibrated", False),
+    ],
+)
+def test_the_floor_counts_where_it_is_known_and_others_may_hide_the_person(
+    people: Literal[1, "all"], source: ScaleSource, counts: bool
+) -> None:
     stage = Stage(views=(1,))
-    stage.state = stage.state._replace(scale_source=source)
+    stage.state = stage.state._replace(scale_source=source, settings=Settings(people=people))
     stage.show([standing()] * 2)
     found = stage.state.person.found
     assert found is not None
     assert found.alone is not None
-    assert (found.alone.place is not None) == (source != "assumed")
+    assert (found.alone.place is not None) == counts
 
 
 @pytest.mark.parametrize("silent", [0, 1])

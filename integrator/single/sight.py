@@ -51,7 +51,8 @@ class Sight(NamedTuple):
     number: ViewerNumber = 1
     """Index of its camera in the run's rig."""
     on_floor: bool = False
-    """Whether the rig's floor is known."""
+    """Whether the rig's floor is known, and the person may be hidden by others: the size of a whole
+    silhouette tells the depth of who is alone better than feet, which walk."""
 
     @property
     def camera(self) -> Camera:
