@@ -356,6 +356,22 @@ def test_who_is_not_due_is_not_looked_at_and_goes_on_from_the_last_look(
     assert looked == [1, 0, 0, 1]
 
 
+def test_of_several_people_a_late_frame_shows_one_in_turn_unless_it_is_said_whom(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    scene, state = Scene(monkeypatch, standing(60.0), standing(240.0)), State()
+    for at in range(10):
+        state, _ = scene.step(state, at / 15)
+    first, second = (each.number for each in state.looks)
+    looked = []
+    for at, due in enumerate((None, None, None, first)):
+        late = frame((10 + at) / 15, hurried=True)
+        state, shown = step(state, late, EMPTY, SETTINGS, alone=False, due=due)
+        seen = {shown.number: shown.followed, **dict(shown.others)}
+        looked.append([number for number, result in seen.items() if not result.carried])
+    assert looked == [[first], [second], [first], [first]]
+
+
 def test_of_two_who_are_close_the_one_who_is_not_due_is_carried_on(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -92,13 +92,26 @@ def test_where_everyone_is_followed_a_viewer_keeps_its_landmarks_for_a_whole_per
 def test_frames_in_which_people_were_looked_at_in_turn_are_counted_and_told() -> None:
     shedder = LoadShedder(PERIOD_S, "all")
     for people in ((of_track(0), of_track(1)), (of_track(0, carried=True), of_track(1)), ()):
-        shedder.reported(
-            View(frame=0, captured_s=0.0, clock_s=0.0, viewer=1, width=40, height=30, people=people)
-        )
+        shedder.reported(report_of(people))
     assert shedder.in_turn == 1
     assert shedder.odd(50) == ()
     (odd,) = shedder.odd(49)
     assert odd.startswith("1 of 49 frames came late: people were looked at in turn")
+
+
+def test_a_late_frame_with_a_look_at_one_of_several_is_not_counted_as_without_landmarks() -> None:
+    shedder = LoadShedder(PERIOD_S, "all")
+    for people in ((of_track(0, carried=True), of_track(1)), (of_track(0),)):
+        assert shedder.of_frame(FRAME, 2.0 * PERIOD_S).hurried
+        shedder.reported(report_of(people))
+    assert (shedder.frames, shedder.in_turn) == (1, 1)
+    assert not [shedder.of_frame(FRAME, 0.0) for _ in range(5)][-1].hurried
+    shedder.reported(report_of((of_track(0, carried=True), of_track(1))))
+    assert (shedder.frames, shedder.in_turn) == (4, 2), "the integrator asked for that one"
+
+
+def report_of(people: tuple[Observation, ...]) -> View:
+    return View(frame=0, captured_s=0.0, clock_s=0.0, viewer=1, width=40, height=30, people=people)
 
 
 def of_track(number: int, carried: bool = False) -> Observation:

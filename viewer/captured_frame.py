@@ -25,4 +25,5 @@ class CapturedFrame(msgspec.Struct, frozen=True):
     upright: Upright | None = None
     """How `picture` comes from the file's; None: reduced alone."""
     hurried: bool = False
-    """Whether the frame comes late, so that only the silhouette is computed."""
+    """Whether the frame comes late, so that only the silhouette is computed, and of several people
+    one is looked at."""

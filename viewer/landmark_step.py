@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from operator import itemgetter
+from operator import attrgetter, itemgetter
 from typing import Final, NamedTuple
 
 import cv2
@@ -83,8 +83,9 @@ def step(
     """The landmarks of a frame: our own network's, or those that an outside source sent with it.
 
     A frame that comes late is skipped, and keeps what is known, where a background shows the
-    person. A single view has no other to rely on: its landmarks are computed even then, with
-    one look instead of two. An outside source is asked for one person.
+    person; of several people the one is looked at whose last look is the oldest, for nothing else
+    keeps them apart. A single view has no other to rely on: its landmarks are computed even
+    then, with one look instead of two. An outside source is asked for one person.
 
     Args:
         state: From the frame before.
@@ -100,7 +101,9 @@ def step(
         result = LandmarkResult(nearest_landmarks(frame.landmarks, seen.box))
         return State(known_people.of_one(result.landmarks, frame.captured_s)), Shown(result)
     if frame.hurried and not alone and settings.silhouette.background != "none":
-        return state, Shown(LandmarkResult(None), state.people.followed)
+        if not state.looks:
+            return state, Shown(LandmarkResult(None), state.people.followed)
+        due = min(state.looks, key=attrgetter("at_s")).number if due is None else due
     state = searched(state)
     people = known_people.expected_at(state.people, root_px)
     model = LandmarkModel(network_of(settings.landmarks), alone and not frame.hurried)

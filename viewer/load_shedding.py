@@ -35,11 +35,14 @@ class LoadShedder:
         self._late_s = (LATE if people == 1 else LATE_OF_SEVERAL) * period_s
         self._lasts = max(1, round(LASTS_S / period_s))
         self._left = self._in_a_row = 0
+        self._is_hurried = False
+        """Whether the frame that is worked on is late."""
 
     def of_frame(self, frame: CapturedFrame, late_s: float) -> CapturedFrame:
         """The frame, marked as late where its delay requires load shedding."""
         self._left = self._lasts if late_s > self._late_s else max(self._left - 1, 0)
-        if not self._left or self._in_a_row >= self._lasts:
+        self._is_hurried = self._left > 0 and self._in_a_row < self._lasts
+        if not self._is_hurried:
             self._in_a_row = 0
             return frame
         self._in_a_row += 1
@@ -47,8 +50,10 @@ class LoadShedder:
         return msgspec.structs.replace(frame, hurried=True)
 
     def reported(self, view: View) -> None:
-        """Count a report."""
-        self.in_turn += any(one.carried for one in view.people)
+        """Count a report: a late frame has landmarks where one of several people is looked at."""
+        is_in_turn = any(one.carried for one in view.people)
+        self.in_turn += is_in_turn
+        self.frames -= is_in_turn and self._is_hurried
 
     def odd(self, frames: int) -> tuple[str, ...]:
         """The reports at the end of that many frames; none where few were affected."""
