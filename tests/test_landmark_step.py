@@ -1,7 +1,7 @@
 """Where the landmark network looks, when the whole picture is searched, and at whom."""
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Literal
 
 import msgspec
 import numpy as np
@@ -75,10 +75,15 @@ class Scene:
         return [detected(column(each)) for each in self.people]
 
     def step(
-        self, state: State, at_s: float, silhouette: Seen = EMPTY, **more: Any
+        self,
+        state: State,
+        at_s: float,
+        silhouette: Seen = EMPTY,
+        settings: Settings = SETTINGS,
+        **more: Any,
     ) -> tuple[State, Shown]:
         self.at_s = at_s
-        state, shown = step(state, frame(at_s), silhouette, SETTINGS, alone=False, **more)
+        state, shown = step(state, frame(at_s), silhouette, settings, alone=False, **more)
         return searched(state), shown
 
 
@@ -415,15 +420,17 @@ def test_of_people_who_are_close_a_report_does_not_wait_for_the_search(
     assert len(scene.searches) == 2
 
 
-@pytest.mark.parametrize(("second_px", "searches"), [(135.0, 9), (165.0, 2)])
+@pytest.mark.parametrize(
+    ("followed", "second_px", "searches"), [("all", 135.0, 9), ("all", 165.0, 2), (1, 165.0, 9)]
+)
 def test_of_people_who_are_close_and_do_not_meet_the_picture_is_searched_four_times_a_second(
-    monkeypatch: pytest.MonkeyPatch, second_px: float, searches: int
+    monkeypatch: pytest.MonkeyPatch, followed: Literal[1, "all"], second_px: float, searches: int
 ) -> None:
-    """In 0.6 s."""
+    """In 0.6 s; in every frame where one of them alone is followed."""
     scene = Scene(monkeypatch, standing(100.0), standing(second_px))
     monkeypatch.setattr(close_people, "look_in", scene._look_in)
     tracks = tuple(Track(n, each, 1.0) for n, each in enumerate(scene.people))
     state = State(People(tracks, 0, 2), 1.0)
     for at in range(1, 10):
-        state, _ = scene.step(state, 1.0 + at / 15)
+        state, _ = scene.step(state, 1.0 + at / 15, settings=Settings(people=followed))
     assert len(scene.searches) == searches

@@ -110,7 +110,9 @@ def step(
     carried = looks_in_turn.carried(state.looks, due, frame.captured_s)
     if not frame.hurried and are_close(people):
         looks, new = looked_at_alone(frame.picture, people, model, state.detected or (), carried)
-        state = _due(state, frame, 0.0 if are_together(people) else URGENT_S)
+        # One person alone leaves time for it, and must not be taken for who crosses.
+        often = settings.people == 1 or are_together(people)
+        state = _due(state, frame, 0.0 if often else URGENT_S)
     else:
         looks, new = _looks(frame.picture, seen, people, model, carried), list[LandmarkResult]()
         is_first = state.searched_s == -math.inf
