@@ -272,13 +272,14 @@ def test_a_background_takes_half_a_second_of_the_frames_that_are_looked_at(
 
 def test_the_news_are_each_told_under_their_name() -> None:
     guides, shedder = Guides(Taken(), 2), LoadShedder(1 / 15, 1)  # type: ignore[arg-type]
-    guides.misses, shedder.frames = 7, 8
+    guides.misses, shedder.frames, shedder.in_turn = 7, 8, 9
     live = SimpleNamespace(odd=("slow", "gone"), dropped=6)
     assert _news(live, guides, shedder, ("a", "b")) == {  # type: ignore[arg-type]
         "detail": "a\nb\nslow\ngone",
         "dropped": 6,
         "guide_misses": 7,
         "hurried": 8,
+        "in_turn": 9,
         "malformed": 3,
         "foreign": 4,
     }
