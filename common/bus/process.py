@@ -9,9 +9,8 @@ import sys
 import threading
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager, nullcontext, suppress
 from pathlib import Path
-from types import FrameType
 from typing import Any, Final, Literal, NamedTuple
 
 import cv2
@@ -20,6 +19,7 @@ import psutil
 from common.bus.bus import Bus, Stopped
 from common.bus.control_messages import Pulse
 from common.bus.rate import Pace
+from common.platform.heeded_signals import heeding
 from common.platform.platforms import platform
 
 BEAT_S: Final = 1.0
@@ -66,14 +66,13 @@ def process(name: str, context: ProcessContext) -> Iterator[threading.Event]:
             yield context.stop
         return
     stop = threading.Event()
-
-    def end(_number: int, _frame: FrameType | None) -> None:
-        stop.set()
-
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN if context.supervised else end)
+    interrupted = (
+        nullcontext() if context.supervised else heeding(lambda _: stop.set(), signal.SIGINT)
+    )
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
     start_log(name, context.log)
     try:
-        with platform().asked_to_end(stop.set), suppress(Stopped):
+        with interrupted, platform().asked_to_end(stop.set), suppress(Stopped):
             yield stop
     finally:
         signal.signal(signal.SIGINT, before)

@@ -2,10 +2,9 @@
 
 import signal
 import threading
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import AbstractContextManager, contextmanager
+from collections.abc import Callable, Iterable
+from contextlib import AbstractContextManager
 from multiprocessing.connection import Connection
-from types import FrameType
 from typing import Any, Final, NamedTuple, Protocol
 
 import numpy as np
@@ -27,21 +26,6 @@ class Broken(RuntimeError):
 def how_it_ended(code: int) -> str:
     """A process's exit code in words; a negative one is the signal that killed it."""
     return f"killed by {signal.Signals(-code).name}" if code < 0 else f"exit code {code}"
-
-
-@contextmanager
-def heeding_sigterm(end: Callable[[], None]) -> Iterator[None]:
-    """Inside this context SIGTERM calls `end`, where the system has it; in the main thread
-    alone."""
-
-    def heed(_number: int, _frame: FrameType | None) -> None:
-        end()
-
-    before = signal.signal(signal.SIGTERM, heed)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGTERM, before)
 
 
 class Job(NamedTuple):

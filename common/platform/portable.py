@@ -1,12 +1,14 @@
 """The platform of Python's own public parts: spawned processes, pipes, shared memory."""
 
+import signal
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Final
 
 import psutil
 
-from common.platform.platform import Child, Job, Launcher, Platform, Started, heeding_sigterm
+from common.platform.heeded_signals import heeding
+from common.platform.platform import Child, Job, Launcher, Platform, Started
 from common.platform.portable_child import PortableChild
 from common.platform.portable_worker import EAR, PortableLauncher, spawned
 
@@ -29,7 +31,7 @@ class PortablePlatform:
     @contextmanager
     def asked_to_end(self, end: Callable[[], None]) -> Iterator[None]:
         """By the worker's pipe; by SIGTERM too, where the system has it."""
-        with heeding_sigterm(end), EAR.listening(end):
+        with heeding(lambda _: end(), signal.SIGTERM), EAR.listening(end):
             yield
 
     def child(

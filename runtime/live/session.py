@@ -9,7 +9,6 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from types import FrameType
 from typing import Final, NamedTuple
 
 from rich.console import Console
@@ -18,6 +17,7 @@ from common.bus.messages import Body, Posture
 from common.bus.process import HANG_UP, ProcessContext, logged, settle, start_log
 from common.config.settings import Settings
 from common.npz_file import Facts
+from common.platform.heeded_signals import heeding
 from common.platform.platform import Launcher
 from common.platform.platforms import platform
 from common.video.clip_facts import Clip
@@ -193,17 +193,12 @@ def stopped_by_signals(console: Console) -> Iterator[threading.Event]:
     """An event that Ctrl-C, a closed terminal or SIGTERM sets: what goes on ends in order."""
     stop = threading.Event()
 
-    def end(number: int, _frame: FrameType | None) -> None:
+    def end(number: int) -> None:
         console.quiet |= number == HANG_UP  # writing to a closed terminal would fail
         stop.set()
 
     heeded = [signal.SIGINT]
     if HANG_UP and signal.getsignal(HANG_UP) is not signal.SIG_IGN:  # as under nohup
         heeded.append(HANG_UP)
-    before = {number: signal.signal(number, end) for number in heeded}
-    try:
-        with platform().asked_to_end(stop.set):
-            yield stop
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
+    with heeding(end, *heeded), platform().asked_to_end(stop.set):
+        yield stop

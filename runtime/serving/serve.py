@@ -6,7 +6,6 @@ import time
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
-from types import FrameType
 from typing import Final
 
 from rich.console import Console
@@ -14,6 +13,7 @@ from rich.live import Live as LiveDisplay
 
 from common.bus.process import HANG_UP
 from common.config.part_settings import SettingsError
+from common.platform.heeded_signals import heeding
 from common.platform.platforms import platform
 from runtime.live.free_ports import refuse_held_metrics, refuse_held_ports, with_free_endpoint
 from runtime.live.table import table_of
@@ -133,16 +133,11 @@ def _signals(console: Console) -> Iterator[tuple[threading.Event, threading.Even
     stop, anew = threading.Event(), threading.Event()
     attended = console.is_terminal
 
-    def heed(number: int, _frame: FrameType | None) -> None:
+    def heed(number: int) -> None:
         closed = attended and not console.file.isatty()
         console.quiet |= closed  # writing to it would fail
         (anew if number == HANG_UP and not closed else stop).set()
 
     heeded = (signal.SIGINT, HANG_UP) if HANG_UP else (signal.SIGINT,)
-    before = {number: signal.signal(number, heed) for number in heeded}
-    try:
-        with platform().asked_to_end(lambda: heed(signal.SIGTERM, None)):
-            yield stop, anew
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
+    with heeding(heed, *heeded), platform().asked_to_end(lambda: heed(signal.SIGTERM)):
+        yield stop, anew

@@ -1,12 +1,14 @@
 """Linux: workers forked of a zygote, children forked or executed, signals, memory by its file."""
 
 import os
+import signal
 from collections.abc import Callable
 from contextlib import AbstractContextManager
 from typing import Final
 
+from common.platform.heeded_signals import heeding
 from common.platform.linux.child_process import ChildProcess
-from common.platform.platform import Child, Job, Launcher, Platform, Started, heeding_sigterm
+from common.platform.platform import Child, Job, Launcher, Platform, Started
 
 
 class LinuxPlatform:
@@ -26,7 +28,7 @@ class LinuxPlatform:
 
     def asked_to_end(self, end: Callable[[], None]) -> AbstractContextManager[None]:
         """By SIGTERM."""
-        return heeding_sigterm(end)
+        return heeding(lambda _: end(), signal.SIGTERM)
 
     def child(
         self, module: str, stall_s: float, picture_size: tuple[int, int] | None = None
