@@ -4,7 +4,7 @@ import os
 import signal
 import threading
 
-from common.platform.heeded_signals import heeding
+from common.heeded_signals import heeding
 
 SOON_S = 5.0
 

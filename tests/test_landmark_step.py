@@ -377,6 +377,26 @@ def test_of_several_people_a_late_frame_shows_one_in_turn_unless_it_is_said_whom
     assert looked == [[first], [second], [first], [first]]
 
 
+def test_where_people_are_looked_at_in_turn_a_search_takes_a_turn(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Its frame looks at none of them: the next frame would be late by all that it takes."""
+    scene, state = Scene(monkeypatch, standing(60.0), standing(240.0)), State()
+    for at in range(10):
+        state, shown = scene.step(state, at / 15)
+    due = shown.number
+    looked = []
+    for at in range(10, 25):
+        searches = len(scene.searches)
+        state, shown = scene.step(state, at / 15, due=due)
+        state = searched(state)
+        assert columns(shown) == pytest.approx([60.0, 240.0], abs=3.0)
+        carried = [shown.followed.carried, *(each.carried for _, each in shown.others)]
+        looked.append((len(scene.searches) - searches, carried.count(False)))
+    assert set(looked) == {(0, 1), (0, 2), (1, 0)}, "both where the other one's look is too old"
+    assert sum(searches for searches, _ in looked) == 2, "twice a second"
+
+
 def test_of_two_who_are_close_the_one_who_is_not_due_is_carried_on(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -84,8 +84,10 @@ def step(
 
     A frame that comes late is skipped, and keeps what is known, where a background shows the
     person; of several people the one is looked at whose last look is the oldest, for nothing else
-    keeps them apart. A single view has no other to rely on: its landmarks are computed even
-    then, with one look instead of two. An outside source is asked for one person.
+    keeps them apart. Where people are looked at in turn, a search of the whole picture, which takes
+    two looks' time, takes a turn too: all are carried on in its frame. A single view has no other
+    to rely on: its landmarks are computed even then, with one look instead of two. An outside
+    source is asked for one person.
 
     Args:
         state: From the frame before.
@@ -104,19 +106,25 @@ def step(
         if not state.looks:
             return state, Shown(LandmarkResult(None), state.people.followed)
         due = min(state.looks, key=attrgetter("at_s")).number if due is None else due
-    state = searched(state)
+    state, is_first = searched(state), state.searched_s == -math.inf
     people = known_people.expected_at(state.people, root_px)
     model = LandmarkModel(network_of(settings.landmarks), alone and not frame.hurried)
-    carried = looks_in_turn.carried(state.looks, due, frame.captured_s)
-    if not frame.hurried and are_close(people):
+    close = not frame.hurried and are_close(people)
+    if due is not None:
+        state = _due(state, frame, SEARCH_S if people.are_seen and not close else URGENT_S)
+    rests = state.unsearched is not None
+    carried = looks_in_turn.carried(state.looks, due, frame.captured_s, rests=rests)
+    if close:
         looks, new = looked_at_alone(frame.picture, people, model, state.detected or (), carried)
         # One person alone leaves time for it, and must not be taken for who crosses.
         often = settings.people == 1 or are_together(people)
-        state = _due(state, frame, 0.0 if often else URGENT_S)
+        interval_s = 0.0 if often else URGENT_S
     else:
         looks, new = _looks(frame.picture, seen, people, model, carried), list[LandmarkResult]()
-        is_first = state.searched_s == -math.inf
-        state = _due(state, frame, _interval_s(people, looks[people.followed], seen))
+        interval_s = _interval_s(people, looks[people.followed], seen)
+    if due is None:
+        state = _due(state, frame, interval_s)
+    if not close:
         if is_first or not people.tracks:
             state = searched(state)
         if state.detected is not None:
@@ -229,8 +237,8 @@ def _owners(
 
 
 def _is_sure_at(look: LandmarkResult | None, window: Window) -> bool:
-    """Whether a look was sure, and taken in about the same window."""
-    if look is None or look.person is None or look.surety < SURE:
+    """Whether a look, or the one that is carried on, was sure, and in about the same window."""
+    if look is None or look.person is None or not (look.carried or look.surety >= SURE):
         return False
     return same_place(look.person.window, window)
 

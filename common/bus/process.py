@@ -19,7 +19,7 @@ import psutil
 from common.bus.bus import Bus, Stopped
 from common.bus.control_messages import Pulse
 from common.bus.rate import Pace
-from common.platform.heeded_signals import heeding
+from common.heeded_signals import heeding
 from common.platform.platforms import platform
 
 BEAT_S: Final = 1.0

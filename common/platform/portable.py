@@ -7,7 +7,7 @@ from typing import Final
 
 import psutil
 
-from common.platform.heeded_signals import heeding
+from common.heeded_signals import heeding
 from common.platform.platform import Child, Job, Launcher, Platform, Started
 from common.platform.portable_child import PortableChild
 from common.platform.portable_worker import EAR, PortableLauncher, spawned

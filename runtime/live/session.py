@@ -16,8 +16,8 @@ from rich.console import Console
 from common.bus.messages import Body, Posture
 from common.bus.process import HANG_UP, ProcessContext, logged, settle, start_log
 from common.config.settings import Settings
+from common.heeded_signals import heeding
 from common.npz_file import Facts
-from common.platform.heeded_signals import heeding
 from common.platform.platform import Launcher
 from common.platform.platforms import platform
 from common.video.clip_facts import Clip

@@ -13,7 +13,7 @@ from rich.live import Live as LiveDisplay
 
 from common.bus.process import HANG_UP
 from common.config.part_settings import SettingsError
-from common.platform.heeded_signals import heeding
+from common.heeded_signals import heeding
 from common.platform.platforms import platform
 from runtime.live.free_ports import refuse_held_metrics, refuse_held_ports, with_free_endpoint
 from runtime.live.table import table_of

@@ -50,7 +50,9 @@ def step(
     return tuple(after)
 
 
-def carried(looks: Sequence[LastLook], due: int | None, at_s: float) -> dict[int, LandmarkResult]:
+def carried(
+    looks: Sequence[LastLook], due: int | None, at_s: float, *, rests: bool = False
+) -> dict[int, LandmarkResult]:
     """The people who are not looked at now, by number: those who were surely seen a moment ago, but
     for the one whose turn it is.
 
@@ -58,13 +60,16 @@ def carried(looks: Sequence[LastLook], due: int | None, at_s: float) -> dict[int
         looks: After the frame before.
         due: The number of the person whose turn it is; None: all are looked at.
         at_s: Capture time.
+        rests: The turn is another work's: that one is not looked at either.
     """
     if due is None or due not in {each.number for each in looks}:
         return {}
     return {
         each.number: _moved(each, at_s - each.at_s)
         for each in looks
-        if each.number != due and each.result.surety >= SURE and at_s - each.at_s <= CARRIED_S
+        if (rests or each.number != due)
+        and each.result.surety >= SURE
+        and at_s - each.at_s <= CARRIED_S
     }
 
 

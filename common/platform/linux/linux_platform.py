@@ -6,7 +6,7 @@ from collections.abc import Callable
 from contextlib import AbstractContextManager
 from typing import Final
 
-from common.platform.heeded_signals import heeding
+from common.heeded_signals import heeding
 from common.platform.linux.child_process import ChildProcess
 from common.platform.platform import Child, Job, Launcher, Platform, Started
 
