@@ -1,21 +1,17 @@
 """A video file: pictures written one after the other, completely or not at all."""
 
-import math
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from itertools import chain
 from pathlib import Path
-from typing import Final, NamedTuple
+from typing import NamedTuple
 
 import cv2
 
 from animator.h264_file import h264_writer
 from animator.video_codec import CODECS, H264, Codec, Picture, Put, best_codec, pictures_in
 from common.atomic_file import replacing
-
-FINEST_HZ: Final = 65_535
-"""Largest time scale of MPEG-4, ticks per second; OpenCV derives the scale from the rate's
-digits."""
+from common.video.camera_file import writable_hz
 
 
 class VideoError(RuntimeError):
@@ -91,12 +87,6 @@ def _writer(path: Path, codec: Codec, size: tuple[int, int], fps: float) -> Iter
         yield put
     finally:
         writer.release()
-
-
-def writable_hz(fps: float) -> float:
-    """The rate, rounded to the digits that every codec accepts: off by less than a frame in
-    10,000."""
-    return round(fps, max(0, int(math.log10(FINEST_HZ / fps))))
 
 
 def _named(path: Path, codec: Codec) -> Path:

@@ -531,3 +531,35 @@ def test_filmed_people_are_read_to_their_end(data_dir: Path, decoder: Decoder, f
         indices = [frame.index for frame in decoder.frames(str(video), (160, 120), Wanted(20))]
         assert indices == list(range(0, claimed, 20))
         assert decoder.ending.frames == claimed
+
+
+class KeptHere:
+    """Keeps pictures in memory."""
+
+    odd = ("slow disk",)
+
+    def __init__(self) -> None:
+        self.taken: list[tuple[Image, float]] = []
+
+    def take(self, picture: Image, taken_s: float) -> None:
+        self.taken.append((picture, taken_s))
+
+
+@pytest.mark.parametrize("size", [SIZE, (128, 96)])
+def test_whole_pictures_are_kept_where_that_is_asked_for(
+    tmp_path: Path, size: tuple[int, int]
+) -> None:
+    """Also those that a late viewer never sees; what it looks at stays as small as it was."""
+    source = written(tmp_path / "cam1.avi", frames=8, size=size, fps=100)
+    view, kept = ClipView(1, source, size, SIZE, 100.0, 8), KeptHere()
+    room = RoomClock(time.monotonic() + 0.3)
+    with Live(view, 1, room, kept=kept) as live:  # type: ignore[arg-type]
+        while len(kept.taken) < 8:
+            time.sleep(0.01)
+        frame = live.take(1.0)
+        assert live.odd == ("slow disk",)
+    assert frame is not None
+    assert (frame.index, frame.picture.shape) == (8 - WAITING, (48, 64, 3))
+    assert [shown(picture) for picture, _ in kept.taken] == list(range(8))
+    assert {picture.shape for picture, _ in kept.taken} == {(size[1], size[0], 3)}
+    assert [taken_s for _, taken_s in kept.taken] == pytest.approx([n / 100 for n in range(8)])

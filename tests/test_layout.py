@@ -80,6 +80,7 @@ SYSTEM = {
     "system_full_disk": "a disk that takes no more, from the first message to the resumed run",
     "system_hosts": "containers and units of a rig over hosts: what they start is there",
     "system_live_view": "a live view's frames: decoder, clock and landmarks from outside by hand",
+    "system_live_pictures": "live runs that keep their pictures, and the clip that they leave",
     "system_live_fallback": "live runs that lose a view: real processes that are killed or frozen",
     "system_lost_view": "both viewers and the integrator in lock-step, then one of them alone",
     "system_many_views": "the fusion of landmarks of three views and more",

@@ -54,15 +54,16 @@ def ran(monkeypatch: pytest.MonkeyPatch) -> Called:
 
 def test_a_live_run_is_that_of_its_settings_and_what_is_typed(given: Called, ran: Called) -> None:
     words = ["--mode", "paper", "--size", "160x120", "--landmarks", "none", "--record", "--no-wait"]
-    said = typed(live, "gym.toml", "--out", "new", *words)
-    settings, out, _, name, record = ran.last
+    said = typed(live, "gym.toml", "--out", "new", *words, "--record-pictures")
+    settings, out, _, name, record, pictures = ran.last
+    assert pictures
     assert (settings.mode, settings.size, settings.landmarks) == ("paper", "160x120", "none")
     assert (out, name, record, settings.page.wait) == (Path("new"), "gym", True, False)
     assert "posture: squat; written to new" in said.output
     ran.answer = {"posture": ""}
     said = typed(live, "somewhere")
-    settings, out, _, name, record = ran.last
-    assert (out, name, record) == (live_commands.LAST, "", False)
+    settings, out, _, name, record, pictures = ran.last
+    assert (out, name, record, pictures) == (live_commands.LAST, "", False, False)
     assert settings.page.wait is Settings().page.wait
     assert "posture: none; written to runs/live" in said.output
     assert settings.people == 1
@@ -88,6 +89,11 @@ def test_another_run_is_written_over_only_where_the_last_one_always_is(
     assert len(ran.given) == 2
     write_run(here / "runs/live", [], Settings(), run_of("live", [0, 1]).facts)
     assert "another run" not in typed(live, "gym.toml").output
+    (here / "runs/live/pictures").mkdir()
+    with pytest.raises(LiveRefused, match="pictures holds what cameras showed in another run"):
+        typed(live, "gym.toml")
+    typed(live, "gym.toml", "--force")
+    assert len(ran.given) == 4
 
 
 def test_the_demo_is_shown_unless_it_is_told_not_to(

@@ -12,10 +12,10 @@ from spoiling import write_video
 
 from common.atomic_file import FileRefused
 from common.config.settings import Settings
+from common.video import camera_file
 from common.video.clip_sources import ClipError
 from common.video.clips import open_clip
-from tritrack.recording_cameras import camera_take, record_clip
-from tritrack.recording_cameras.camera_take import CameraTake
+from tritrack.recording_cameras import record_clip
 from tritrack.recording_cameras.record_clip import record_clip as recorded
 
 
@@ -53,15 +53,6 @@ def test_a_recording_is_a_clip_with_the_time_of_each_frame(
     assert min(view.capture_s[0] for view in clip.views) == 0.0
 
 
-def test_missing_frames_are_counted_by_their_times() -> None:
-    take = object.__new__(CameraTake)
-    take._hz, take.times_s = 30.0, [0.0, 0.1, 0.2, 0.5, 0.6, 0.8]
-    assert take.rate_hz == pytest.approx(10.0)
-    assert take.dropped == 3
-    take.times_s = [0.0]
-    assert (take.dropped, take.rate_hz) == (0, 30.0)
-
-
 @pytest.mark.slow
 def test_it_ends_when_asked_to_when_a_camera_ends_and_when_the_disk_is_full(
     cameras: tuple[Path, Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -81,7 +72,7 @@ def test_it_ends_when_asked_to_when_a_camera_ends_and_when_the_disk_is_full(
     monkeypatch.setattr(record_clip, "LOOK_S", 0.5)
     assert record(cameras, tmp_path / "full", 30.0)["why"] == "the disk is full"
     monkeypatch.undo()
-    monkeypatch.setattr(camera_take, "MOST_BYTES", -1)
+    monkeypatch.setattr(camera_file, "MOST_BYTES", -1)
     monkeypatch.setattr(record_clip, "LOOK_S", 0.5)
     with pytest.raises(ClipError, match="gave 1 pictures: record longer"):
         record(cameras, tmp_path / "large", 30.0)

@@ -1,15 +1,26 @@
 """The folder of a live run: what one that was cut short left is put aside, not written over."""
 
+import json
 from pathlib import Path
 
 import pytest
+from msgspec.structs import replace
 
 from common.bus.messages import Body
 from common.config.settings import Settings
+from common.rig.camera import Rig, paper_rig
+from common.rig.rig_file import load_rig
 from common.video.clip_facts import Clip, ClipView, Meta
 from runtime.live.admission import LiveRefused
 from runtime.live.page_desk import SAVED
-from runtime.live.run_folder import KEPT, new_journal, new_log
+from runtime.live.run_folder import (
+    KEPT,
+    finish_pictures,
+    new_journal,
+    new_log,
+    new_pictures,
+    refuse_kept_pictures,
+)
 from runtime.store.journal import has_journal
 from runtime.store.past_journal import LOG, read_journal
 
@@ -77,3 +88,71 @@ def test_a_recording_that_was_torn_goes_aside_with_its_run(tmp_path: Path) -> No
     told = read_journal(tmp_path)
     assert told is not None
     assert told.head.facts["clip"] == "room"
+
+
+RIG = paper_rig((160, 120), (200.0, 210.0), (4.5, 4.0))
+
+
+def clip_of(sizes: tuple[tuple[int, int], ...], rig: Rig | None) -> Clip:
+    views = tuple(ClipView(n, n, size, size, 15.0, 0) for n, size in enumerate(sizes, 1))
+    return Clip("room", views, 1, rig, Meta())
+
+
+def test_pictures_are_kept_beside_the_calibration_that_the_run_has(tmp_path: Path) -> None:
+    named = [replace(one, name=name) for one, name in zip(RIG.cameras, "ab", strict=True)]
+    clip = clip_of(((160, 120), (160, 120)), replace(RIG, cameras=tuple(named)))
+    folder = new_pictures(tmp_path, clip, wanted=True)
+    assert folder == tmp_path / "pictures"
+    rig = load_rig(folder / "calibration.json")
+    assert (rig.width, rig.height) == (160, 120)
+    assert [one.name for one in rig.cameras] == ["cam1", "cam2"]
+    for one, own in zip(rig.cameras, RIG.cameras, strict=True):
+        assert (one.K, one.R, one.t) == (own.K, own.R, own.t)
+
+
+def test_a_calibration_is_for_one_shape_of_pictures(tmp_path: Path) -> None:
+    """Another size of that shape is scaled; another shape, or none, leaves it out."""
+    twice = replace(RIG.cameras[1], K=((420.0, 0.0, 160.0), (0.0, 420.0, 120.0), (0.0, 0.0, 1.0)))
+    rig = replace(RIG, cameras=(RIG.cameras[0], twice))
+    folder = new_pictures(tmp_path, clip_of(((160, 120), (320, 240)), rig), wanted=True)
+    assert folder is not None
+    assert load_rig(folder / "calibration.json").cameras[1].K == RIG.cameras[1].K
+    for clip in (clip_of(((160, 120), (120, 160)), RIG), clip_of(((160, 120),) * 2, None)):
+        folder = new_pictures(tmp_path, clip, wanted=True)
+        assert folder is not None
+        assert [*folder.iterdir()] == [], "nothing of the run before either"
+
+
+def test_a_run_without_pictures_has_no_folder_for_them(tmp_path: Path) -> None:
+    clip = clip_of(((160, 120),), None)
+    assert new_pictures(tmp_path, clip, wanted=True) is not None
+    with pytest.raises(LiveRefused, match="pictures holds what cameras showed in another run"):
+        refuse_kept_pictures(tmp_path)
+    assert new_pictures(tmp_path, clip, wanted=False) is None
+    refuse_kept_pictures(tmp_path)
+    assert [*tmp_path.iterdir()] == []
+    assert finish_pictures(None, []) == {}
+
+
+def test_what_viewers_left_becomes_a_clip_and_what_is_missing_is_said(tmp_path: Path) -> None:
+    times = {"cam1": (2.0, 2.1, 2.2, 2.5), "cam2": (2.05, 2.15), "cam2_2": (3.0, 3.1)}
+    for name, times_s in times.items():
+        (tmp_path / f"{name}.times.txt").write_text("".join(f"{each}\n" for each in times_s))
+    notes: list[str] = []
+    facts = finish_pictures(tmp_path, notes)["pictures"]
+    assert facts["cam1"] == {"frames": 4, "fps": 10.0, "missing": 2}
+    assert facts["cam2"] == {"frames": 2, "fps": 10.0, "missing": 0}
+    assert [*facts] == [*times]
+    meta = json.loads((tmp_path / "meta.json").read_text())
+    assert meta["capture_s"]["cam2_2"] == [1.0, 1.1]
+    assert [path.name for path in tmp_path.iterdir()] == ["meta.json"]
+    assert notes[0] == "2 of 6 pictures of cam1 are missing"
+    assert notes[1].startswith("the viewer of cam2 was started again: what it showed from then on")
+    assert notes[1].endswith("cam2_2.avi, its times in meta.json")
+    assert len(notes) == 2
+
+
+def test_a_run_that_kept_no_picture_says_so(tmp_path: Path) -> None:
+    notes: list[str] = []
+    assert finish_pictures(tmp_path, notes) == {}
+    assert notes == [f"no picture was kept in {tmp_path}"]

@@ -32,6 +32,7 @@ from runtime.live.launch import Subscriber, nothing_heard
 from viewer import __main__ as viewer
 from viewer import track
 from viewer.background.background import learn
+from viewer.guides import Guides
 
 RIG = paper_rig((160, 120), (200.0, 200.0), (4.5, 4.5))
 
@@ -73,9 +74,9 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
     return Clock(monkeypatch, "viewer.__main__")
 
 
-def guides_of(clock: Clock, number: int, *coming: tuple[float, Guide]) -> viewer.Guides:
+def guides_of(clock: Clock, number: int, *coming: tuple[float, Guide]) -> Guides:
     later = [(1000.0 + after_s, message) for after_s, message in coming]
-    return viewer.Guides(SlowInbox(clock, later), number)  # type: ignore[arg-type]
+    return Guides(SlowInbox(clock, later), number)  # type: ignore[arg-type]
 
 
 def test_report_t_uses_the_guide_that_has_heard_of_t_minus_1(clock: Clock) -> None:

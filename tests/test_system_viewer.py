@@ -26,7 +26,6 @@ from common.video.pictures import DecoderDied, Ending
 from viewer import __main__ as viewer_process
 from viewer import track
 from viewer.__main__ import (
-    Guides,
     Prepared,
     StartError,
     _before,
@@ -39,6 +38,7 @@ from viewer.__main__ import (
 )
 from viewer.background.background import learn
 from viewer.captured_frame import CapturedFrame
+from viewer.guides import Guides
 from viewer.load_shedding import LoadShedder
 
 VIEW = ClipView(2, "cam2.avi", (64, 48), (64, 48), 15.0, 40)

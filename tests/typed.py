@@ -23,8 +23,8 @@ class Called:
     def __init__(self, answer: Any = None) -> None:
         self.answer, self.given = answer, list[Any]()
 
-    def __call__(self, *given: Any) -> Any:
-        self.given.append(given)
+    def __call__(self, *given: Any, **named: Any) -> Any:
+        self.given.append((*given, *named.values()))
         return self.answer
 
     @property

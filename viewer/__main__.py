@@ -4,15 +4,15 @@ import logging
 import math
 import threading
 import time
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
-from typing import Final, NamedTuple
+from typing import Final, Literal, NamedTuple
 
 from common.bus import clock
 from common.bus.bus import Bus, open_client
 from common.bus.bus_keys import VIEWERS
 from common.bus.control_messages import ClockQuestion, Command, Ended
-from common.bus.inbox import Inbox
-from common.bus.messages import Guide, Picture, ViewerNumber
+from common.bus.messages import Guide, Picture, View, ViewerNumber
 from common.bus.process import BEGIN_S, READY_S, Heart, ProcessContext, process, settle
 from common.bus.rate import Pace
 from common.config.settings import Settings
@@ -29,6 +29,8 @@ from viewer.background.background import Background
 from viewer.background.new_background import Learning
 from viewer.capture import Live, RoomClock
 from viewer.captured_frame import CapturedFrame
+from viewer.guides import Guides
+from viewer.kept_pictures import KeptPictures
 from viewer.landmarks.landmark_sources import outside_sources
 from viewer.load_shedding import LoadShedder
 from viewer.resend_buffer import ResendBuffer
@@ -46,48 +48,6 @@ log = logging.getLogger(__name__)
 
 class StartError(RuntimeError):
     """The run did not begin; the text names the cause."""
-
-
-class Guides:
-    """The newest guide, and the number of guides that came too late."""
-
-    def __init__(self, inbox: Inbox[Guide], viewer: ViewerNumber) -> None:
-        """Guides for this viewer."""
-        self.misses = 0
-        self.newest: Guide | None = None
-        self._inbox, self._viewer = inbox, viewer
-
-    def of_frame(self, index: int, wait_s: float) -> Guide | None:
-        """The guide that takes this viewer's last frame into account; else the newest, counted as a
-        miss.
-
-        A guide of a rig without this viewer's camera is ignored.
-        """
-        until_s = time.monotonic() + wait_s
-        while self.heard < index:
-            left_s = until_s - time.monotonic()
-            guide = self._inbox.take(max(0.0, left_s))
-            if guide is not None and len(guide.frames) >= self._viewer:
-                self.newest = guide
-            elif left_s <= 0:
-                self.misses += 1
-                break
-        return self.newest
-
-    @property
-    def malformed(self) -> int:
-        """Number of malformed messages received as guides."""
-        return self._inbox.malformed
-
-    @property
-    def foreign(self) -> int:
-        """Number of guides from other runs."""
-        return self._inbox.foreign
-
-    @property
-    def heard(self) -> int:
-        """The last frame of this viewer that a guide takes into account; -1: none."""
-        return -1 if self.newest is None else self.newest.frames[self._viewer - 1]
 
 
 class Prepared(NamedTuple):
@@ -111,51 +71,83 @@ def run(prepared: Prepared, live: Live, bus: Bus, stop: threading.Event) -> None
         bus: Receives the reports.
         stop: Ends it early.
     """
-    view, state, warnings, _ = prepared
-    settings = state.setup.settings
-    period_s = settings.every / view.fps
-    pace = Pace(period_s)
-    heart = Heart(bus, f"viewer {view.number}", pace)
-    guides = Guides(bus.subscribe(Guide), view.number)
-    unheard_reports, alive = ResendBuffer(), bus.watch_alive()
-    learning = Learning(bus.subscribe(Command), view.number, _empty_frames(state, view))
-    shedder, before, why = LoadShedder(period_s, settings.people), -1, ""
+    work, why = FrameLoop(prepared, live, bus), ""
     try:
         while not stop.is_set() and not live.over:
-            frame = live.take(period_s)
-            if frame is None:
-                heart.beat("running", **_news(live, guides, shedder, warnings))
-                continue
-            guide = guides.of_frame(before, WAIT_SHARE * period_s)
-            frame = shedder.of_frame(frame, time.monotonic() + live.offset_s - frame.clock_s)
-            state, report = track.step(state, frame, guide)
-            for missed in unheard_reports.again(guides.heard, alive.drain()):
-                bus.publish(missed)
-            bus.publish(report)
-            unheard_reports.said(report)
-            shedder.reported(report)
-            pace.done(frame.clock_s - live.offset_s, time.monotonic())
-            if state.setup.settings.pictures:
-                bus.publish(_picture(view.number, frame))
-            state = track.finished(state)
-            heart.beat("running", **_news(live, guides, shedder, warnings))
-            background, answer = learning.step(frame.picture, report.fault)
-            if background is not None:
-                state = _before(background, state, prepared)
-            if answer is not None:
-                bus.publish(answer)
-            before = frame.index
+            frame = live.take(work.period_s)
+            if frame is not None:
+                work.process(frame)
+            work.beat("running")
     except (DecoderDied, Undecodable) as error:
         why = str(error)
         raise
     finally:  # Even when the decoder crashed: the run must not wait for this view again.
-        bus.publish(Ended(viewer=view.number, frames=pace.frames, why=why))
-    short = shortfall(view, live.ending) if live.over else ""
-    for odd in (short, *shedder.odd(pace.frames)):
-        if odd:
+        bus.publish(Ended(viewer=prepared.view.number, frames=work.frames, why=why))
+    work.finish()
+
+
+class FrameLoop:
+    """What is done with each frame of a live view, and what is reported of that."""
+
+    def __init__(self, prepared: Prepared, live: Live, bus: Bus) -> None:
+        """As `run`."""
+        view, settings = prepared.view, prepared.state.setup.settings
+        self._prepared, self._live, self._bus = prepared, live, bus
+        self._state, self._warnings = prepared.state, prepared.warnings
+        self.period_s = settings.every / view.fps
+        """Seconds between two frames."""
+        self._pace = Pace(self.period_s)
+        self._heart = Heart(bus, f"viewer {view.number}", self._pace)
+        self._guides = Guides(bus.subscribe(Guide), view.number)
+        self._unheard, self._alive = ResendBuffer(), bus.watch_alive()
+        empty_frames = _empty_frames(prepared.state, view)
+        self._learning = Learning(bus.subscribe(Command), view.number, empty_frames)
+        self._shedder, self._before = LoadShedder(self.period_s, settings.people), -1
+
+    @property
+    def frames(self) -> int:
+        """Number of processed frames."""
+        return self._pace.frames
+
+    def process(self, frame: CapturedFrame) -> None:
+        """Look at a frame, publish its report, and what the integrator missed before."""
+        offset_s = self._live.offset_s
+        guide = self._guides.of_frame(self._before, WAIT_SHARE * self.period_s)
+        frame = self._shedder.of_frame(frame, time.monotonic() + offset_s - frame.clock_s)
+        self._state, report = track.step(self._state, frame, guide)
+        for missed in self._unheard.again(self._guides.heard, self._alive.drain()):
+            self._bus.publish(missed)
+        self._bus.publish(report)
+        self._unheard.said(report)
+        self._shedder.reported(report)
+        self._pace.done(frame.clock_s - offset_s, time.monotonic())
+        if self._state.setup.settings.pictures:
+            self._bus.publish(_picture(self._prepared.view.number, frame))
+        self._state = track.finished(self._state)
+        self._learn(frame, report)
+        self._before = frame.index
+
+    def beat(self, state: Literal["running", "ended"]) -> None:
+        """Report how it goes, once a second and at the end."""
+        news = _news(self._live, self._guides, self._shedder, self._warnings)
+        self._heart.beat(state, **news)
+
+    def finish(self) -> None:
+        """Report the end, and what was missing of the video or of the time for it."""
+        live = self._live
+        short = shortfall(self._prepared.view, live.ending) if live.over else ""
+        for odd in filter(None, (short, *self._shedder.odd(self.frames))):
             log.warning(odd)
-            warnings = (*warnings, odd)
-    heart.beat("ended", **_news(live, guides, shedder, warnings))
+            self._warnings = (*self._warnings, odd)
+        self.beat("ended")
+
+    def _learn(self, frame: CapturedFrame, report: View) -> None:
+        """Take a new background where that was asked for, and it is learnt."""
+        background, answer = self._learning.step(frame.picture, report.fault)
+        if background is not None:
+            self._state = _before(background, self._state, self._prepared)
+        if answer is not None:
+            self._bus.publish(answer)
 
 
 def _before(background: Background, state: track.State, prepared: Prepared) -> track.State:
@@ -199,14 +191,25 @@ def main(
                     prepared = prepared._replace(
                         state=state._replace(landmarks=landmark_step.State())
                     )
+                source = sources.get(viewer)
                 with (
+                    _kept_pictures(view, context) as kept,
                     Live(
-                        view, settings.every, room_clock, sources.get(viewer), decoder=decoder
+                        view, settings.every, room_clock, source, decoder=decoder, kept=kept
                     ) as live,
                     clock.followed(bus, live.set_offset),
                 ):
                     run(prepared, live, bus, stop)
                 stop.wait(0.0 if context.supervised else LAST_WORDS_S)
+
+
+def _kept_pictures(
+    view: ClipView, context: ProcessContext
+) -> AbstractContextManager[KeptPictures | None]:
+    """What keeps the view's pictures, where the run does."""
+    if context.pictures is None:
+        return nullcontext()
+    return KeptPictures(context.pictures, view.number, view.fps)
 
 
 def _prepared(settings: Settings, viewer: ViewerNumber, context: ProcessContext) -> Prepared:

@@ -11,8 +11,9 @@ from common.bus.mailbox import Mailbox
 from common.bus.rate import Clock, wait_until
 from common.video.clip_facts import ClipView
 from common.video.decoding import Decoder
-from common.video.pictures import CameraLost, Decoded, Ending, Reader, Wanted, is_camera
+from common.video.pictures import CameraLost, Decoded, Ending, Reader, Size, Wanted, is_camera
 from viewer.captured_frame import CapturedFrame
+from viewer.kept_pictures import KeptPictures
 from viewer.landmarks.outside_source import OutsideSource
 
 WAITING: Final = 2
@@ -75,14 +76,17 @@ class Live:
         source: OutsideSource | None = None,
         clock: Clock = time.monotonic,
         decoder: Decoder | None = None,
+        kept: KeptPictures | None = None,
     ) -> None:
         """Begin to decode at once; the first frame of a video is due at the room's start.
 
         The source is asked for the landmarks of every frame, and waited for until the next is due.
-        The decoder, a new one where none is given, ends with this.
+        The decoder, a new one where none is given, ends with this. `kept` gets the whole picture of
+        every frame, or as large a one as the source asks for.
         """
         self._view = view
         self._source = source
+        self._kept = kept
         self._room = room
         self._clock = clock
         self._began_s = clock()
@@ -117,8 +121,10 @@ class Live:
 
     @property
     def odd(self) -> tuple[str, ...]:
-        """Faults of its source of landmarks so far, one line each."""
-        return self._source.odd if self._source else ()
+        """Faults of its source of landmarks, and of keeping pictures, so far, one line each."""
+        return tuple(
+            line for each in (self._source, self._kept) if each is not None for line in each.odd
+        )
 
     @property
     def dropped(self) -> int:
@@ -150,8 +156,8 @@ class Live:
 
     def _run(self) -> None:
         """Deliver each frame at its time; in a thread of its own."""
-        view, large = self._view, self._source.large if self._source else None
-        wanted = Wanted(view.every(self._every), large=large, quarters=view.quarters)
+        view = self._view
+        wanted = Wanted(view.every(self._every), large=self._large(), quarters=view.quarters)
         frames = self._decoder.frames(view.source, view.size, wanted)
         try:
             for decoded in (each for each in frames if view.is_looked_at(each.index)):
@@ -163,6 +169,7 @@ class Live:
                     self._missed += 1
                 else:
                     self._waiting.put(self._with_landmarks(frame, decoded))
+                    self._keep(decoded, frame.captured_s)
             if is_camera(view.source):
                 raise CameraLost(view.source, self._decoder.ending.frames)
         except Exception as error:  # The reader raises whatever ended this thread,
@@ -171,6 +178,17 @@ class Live:
             frames.close()
             self._decoder.close()
             self._waiting.close()
+
+    def _large(self) -> Size | None:
+        """Size of a second picture of each frame, where one is needed."""
+        asked = self._source.large if self._source else None
+        whole = self._view.upright_source
+        return whole if asked is None and self._kept and whole != self._view.size else asked
+
+    def _keep(self, decoded: Decoded, captured_s: float) -> None:
+        if self._kept is not None:
+            large = decoded.large
+            self._kept.take(decoded.picture if large is None else large, captured_s)
 
     def _with_landmarks(self, frame: CapturedFrame, decoded: Decoded) -> CapturedFrame:
         if self._source is None:

@@ -49,6 +49,8 @@ class ProcessContext(NamedTuple):
     kept: Path | None = None
     """Folder of this run in which a process leaves its state for its successor; None: it has
     none."""
+    pictures: Path | None = None
+    """Folder in which viewers keep what their cameras show; None: no picture is kept."""
     stop: threading.Event | None = None
     """Event that ends the part, where the part is a thread of its supervisor's process; None: it
     has its own process."""

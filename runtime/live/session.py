@@ -28,7 +28,7 @@ from runtime.live.page_desk import PageDesk
 from runtime.live.process_table import live_parts
 from runtime.live.recorded import SoFar, WholeRun
 from runtime.live.run_facts import facts_of, note_lost, note_unseen
-from runtime.live.run_folder import KEPT, new_journal, new_log
+from runtime.live.run_folder import KEPT, finish_pictures, new_journal, new_log, new_pictures
 from runtime.live.screen import Screen
 from runtime.store.past_journal import Journalled
 from runtime.store.recording import Keep
@@ -49,6 +49,7 @@ def live(
     record: bool = False,
     tell: Callable[[Heard], bool | None] = lambda _: None,
     together: bool = False,
+    pictures: bool = False,
 ) -> Facts:
     """Run the processes on a clip or on cameras until it ends or Ctrl-C; write the run folder.
 
@@ -62,6 +63,7 @@ def live(
         record: Keep the viewers' reports for a replay.
         tell: Also called ten times a second, with the messages so far; True ends the run.
         together: All parts but the page are threads of this process, with one log.
+        pictures: Keep what the cameras show, a clip in the folder PICTURES of the run's.
 
     Returns:
         The run's summary.
@@ -90,16 +92,16 @@ def live(
         desk.facts = facts
         journal = new_journal(out, clip, settings, heard.notes)
         heard = heard._replace(journal=journal)
+        folder = new_pictures(out, clip, pictures)
+        run_of = _Prepared(
+            settings, clip, out, log, launcher, desk, screen, record, together, folder
+        )
         try:
-            _follow(
-                _Prepared(settings, clip, out, log, launcher, desk, screen, record, together),
-                stop,
-                heard,
-                tell,
-            )
+            _follow(run_of, stop, heard, tell)
         finally:
             note_lost(heard)
-            told = facts(heard.so_far)
+            kept = finish_pictures(folder, heard.notes)
+            told = facts(heard.so_far) | kept
             bodies = WholeRun(heard.bodies, Journalled(out, Body))
             write_run(out, bodies, settings, told)
             postures = WholeRun(heard.postures, Journalled(out, Posture))
@@ -121,16 +123,18 @@ class _Prepared(NamedTuple):
     screen: Screen
     record: bool
     together: bool
+    pictures: Path | None
+    """Folder for what the cameras show; None: it is not kept."""
 
 
 def _follow(
     run_of: _Prepared, stop: threading.Event, heard: Heard, tell: Callable[[Heard], bool | None]
 ) -> None:
     """Run the processes until the clip ends or `stop` is set."""
-    settings, clip, out, log, launcher, desk, screen, record, together = run_of
+    settings, clip, out, log, launcher, desk, screen, record, together, pictures = run_of
     with ExitStack() as doors:
         kept = doors.enter_context(TemporaryDirectory(prefix=KEPT, dir=out))
-        context = ProcessContext(True, log, Path(kept))
+        context = ProcessContext(True, log, Path(kept), pictures)
         parts = live_parts(settings, clip, context, launcher, together)
         show = doors.enter_context(screen.shown([part.name for part in (*parts, *desk.parts)]))
         doors.enter_context(logged("supervisor", log))

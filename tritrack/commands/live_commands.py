@@ -73,6 +73,9 @@ def live(
     people: People = None,
     offset: Offset = None,
     record: Record = False,
+    record_pictures: Annotated[
+        bool, typer.Option(help="Keep what each camera shows, as a clip in the run's folder.")
+    ] = False,
     wait: Wait = True,
     force: Force = False,
     json_wanted: JsonWanted = False,
@@ -93,7 +96,7 @@ def live(
     if not force:
         _refuse_other_than_last(out, settings)
     name = settings_file.stem if settings_file.is_file() else ""
-    facts = run_live(settings, out, console, name, record)
+    facts = run_live(settings, out, console, name, record, pictures=record_pictures)
     tell(facts, json_wanted, f"{_named(facts)}; written to {out}")
 
 
@@ -107,8 +110,10 @@ def _named(facts: Facts) -> str:
 def _refuse_other_than_last(out: Path, settings: Settings) -> None:
     """Refuse to overwrite a run other than the last one, and report that one's replacement."""
     from common.video.clip_sources import sources_of
+    from runtime.live.run_folder import refuse_kept_pictures
     from runtime.store.other_run import other_than, refuse_other, run_of
 
+    refuse_kept_pictures(out)
     now = run_of("live", [view.source for view in sources_of(settings)])
     if out != LAST:
         refuse_other(out, now)

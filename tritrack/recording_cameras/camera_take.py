@@ -7,12 +7,11 @@ from contextlib import closing
 from pathlib import Path
 from typing import Final
 
-import cv2
 import numpy as np
 
-from animator.video_file import writable_hz
 from common.body.body import Vector
 from common.bus.rate import wait_until
+from common.video.camera_file import SUFFIX, CameraFile, missing_of, rate_of
 from common.video.clips import probed
 from common.video.decoding import Decoder
 from common.video.pictures import Decoded, DecoderDied, Image, Source, Undecodable, is_recorded
@@ -20,8 +19,6 @@ from tritrack.recording_cameras.motion_delay import change, small_of
 
 USUAL_HZ: Final = 30.0
 """Rate of a camera that reports none; the times of its frames say what it was."""
-MOST_BYTES: Final = 1_900_000_000
-"""Size of a file, bytes: an AVI of the first kind ends at two gigabytes."""
 
 
 class CameraTake:
@@ -29,7 +26,7 @@ class CameraTake:
 
     def __init__(self, name: str, source: Source, folder: Path) -> None:
         """Open it; raises ClipError where it gives no picture."""
-        self.name, self.source, self.path = name, source, folder / f"{name}.avi"
+        self.name, self.source, self._path = name, source, folder / f"{name}{SUFFIX}"
         self.times_s: list[float] = []
         """When each written frame was taken, this host's monotonic clock."""
         self.changes: list[float] = []
@@ -65,14 +62,13 @@ class CameraTake:
 
     @property
     def rate_hz(self) -> float:
-        """Frames a second, by the median step; what the camera says where there are too few."""
-        steps_s = np.diff(self.times_s)
-        return 1.0 / float(np.median(steps_s)) if len(steps_s) else self._hz
+        """Frames a second, by their times; what the camera says where there are too few."""
+        return rate_of(self.times_s, self._hz)
 
     @property
     def dropped(self) -> int:
         """Frames that are missing, by the steps between those that came."""
-        return int(np.maximum(np.rint(np.diff(self.times_s) * self.rate_hz) - 1, 0).sum())
+        return missing_of(self.times_s)
 
     @property
     def motion(self) -> tuple[Vector, Vector]:
@@ -80,7 +76,7 @@ class CameraTake:
         return np.array(self.times_s), np.array(self.changes)
 
     def _run(self) -> None:
-        writer: cv2.VideoWriter | None = None
+        file: CameraFile | None = None
         before: Image | None = None
         try:
             with closing(self._played()) as frames:
@@ -90,11 +86,10 @@ class CameraTake:
                         return
                     small = small_of(decoded.picture)
                     if self._begin.is_set():
-                        writer = writer or self._opened()
-                        writer.write(decoded.picture)
-                        self.times_s.append(decoded.grabbed_s)
+                        file = file or self._opened()
+                        file.write(decoded.picture, decoded.grabbed_s)
                         self.changes.append(change(before, small))
-                        self.is_full = self.path.stat().st_size > MOST_BYTES
+                        self.is_full = file.is_full
                     before = small
             if not self._end.is_set():
                 self.fault = "it gave no more pictures"
@@ -102,17 +97,13 @@ class CameraTake:
             self.fault = "" if self._end.is_set() else str(error)
         finally:
             self.is_ready.set()
-            if writer is not None:
-                writer.release()
+            if file is not None:
+                file.close()
 
-    def _opened(self) -> cv2.VideoWriter:
-        code = cv2.VideoWriter.fourcc(*"MJPG")
-        made = cv2.VideoWriter(
-            str(self.path), cv2.CAP_OPENCV_MJPEG, code, writable_hz(self._hz), self.size
-        )
-        if not made.isOpened():
-            raise OSError(f"cannot write {self.path}: see that its folder takes files")
-        return made
+    def _opened(self) -> CameraFile:
+        file = CameraFile(self._path, self.size, self._hz)
+        self.times_s = file.times_s
+        return file
 
     def _played(self) -> Generator[Decoded, None, None]:
         """A camera's pictures as they come, a file's at its pace."""

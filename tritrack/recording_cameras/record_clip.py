@@ -8,11 +8,11 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Final
 
-from common.atomic_file import FileRefused, replacing
+from common.atomic_file import FileRefused
 from common.npz_file import Facts
+from common.video.camera_file import SPARE_BYTES, write_times
 from common.video.clip_sources import CLIP_CAMERAS, ClipError
 from common.video.pictures import Source, named
-from runtime.terminal import json_text
 from tritrack.recording_cameras.camera_take import CameraTake
 from tritrack.recording_cameras.motion_delay import delay_s
 
@@ -21,8 +21,6 @@ MOST_S: Final = 1200.0
 LOOK_S: Final = 0.1
 READY_S: Final = 20.0
 """Seconds within which a camera gives its first picture, or it never will."""
-SPARE_BYTES: Final = 1_000_000_000
-"""What a disk keeps free, bytes."""
 
 
 def record_clip(
@@ -106,15 +104,7 @@ def _finished(takes: Sequence[CameraTake], folder: Path, lasted_s: float, why: s
         raise ClipError(
             f"{named(empty[0].source)} gave {len(empty[0].times_s)} pictures: record longer"
         )
-    first_s = min(take.times_s[0] for take in takes)
-    meta = {
-        "fps": {take.name: round(take.rate_hz, 4) for take in takes},
-        "capture_s": {
-            take.name: [round(each - first_s, 5) for each in take.times_s] for take in takes
-        },
-    }
-    with replacing(folder / "meta.json") as new:
-        new.write_text(json_text(meta), encoding="utf-8")
+    write_times(folder, {take.name: take.times_s for take in takes})
     later = {take.name: delay_s(takes[0].motion, take.motion) for take in takes[1:]}
     return {
         "folder": str(folder),
