@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -60,6 +61,33 @@ def body_of(
         matches=sum(_matches(seen) for seen in now.instant.detections if seen is not None),
         lifting=None if person.found.alone is None else person.found.alone.lifting,
         agreement=told,
+    )
+
+
+def predicted(state: State, lost: Body, last: Body, by_m: Vector) -> Body:
+    """The body of a person whom no view shows: as it was last, moved; its confidence is 0.
+
+    Args:
+        state: Of this instant.
+        lost: Of this instant, without a pose.
+        last: As last believed.
+        by_m: (3,) by how much it is moved since then.
+    """
+    cameras = () if state.rig is None else state.rig.cameras
+    pose = np.array(last.pose)
+    pose[:3] += by_m
+    places_m, ends_m = np.array(last.joints_m) + by_m, np.array(last.extremities_m) + by_m
+    return msgspec.structs.replace(
+        lost,
+        status="predicted",
+        joints_m=_points(places_m),
+        joints_px=_filed(state, [project(camera, places_m) for camera in cameras]),
+        pose=tuple(pose.tolist()),
+        angles_raw_deg=last.angles_raw_deg,
+        confidence=(0.0,) * len(places_m),
+        extremities_m=_points(ends_m),
+        extremities_px=_filed(state, [project(camera, ends_m) for camera in cameras]),
+        extremities_confidence=(0.0,) * len(ends_m),
     )
 
 

@@ -46,6 +46,8 @@ class Life(NamedTuple):
     joints_s: float = -math.inf
     """When that was; -inf: never."""
     velocity_m_s: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    body: Body | None = None
+    """As last believed."""
     colours: tuple[tuple[float, ...], ...] = ()
     """For each view, the mean colours of their clothes, as `Observation.colours`; empty: unknown.
     A camera's own colours differ less than those of two."""
@@ -101,7 +103,7 @@ def after(life: Life, body: Body, seen: tuple[Observation | None, ...], now_s: f
         return life
     joints_m = np.array(body.joints_m)
     return life._replace(
-        joints_m=joints_m, joints_s=now_s, velocity_m_s=_velocity(life, joints_m, now_s)
+        joints_m=joints_m, joints_s=now_s, velocity_m_s=_velocity(life, joints_m, now_s), body=body
     )
 
 

@@ -89,8 +89,10 @@ def recognised(state: State, instant: Instant, now_s: float) -> tuple[State, lis
 
 
 def _wait_s(group: Group, state: State) -> float:
-    """How long a new person must be shown: not at all where no person is known and it is clear."""
-    return 0.0 if group.is_clear and not state.lives else BORN_S
+    """How long a new person must be shown: not at all where no person is known and it is clear, or
+    there is no other view that could tell."""
+    is_clear = group.is_clear or state.room.alone
+    return 0.0 if is_clear and not state.lives else BORN_S
 
 
 def born(room: merge_state.State, number: int, tracks: tuple[int, ...], now_s: float) -> Life:

@@ -6,7 +6,7 @@ from common.bus.control_messages import Command
 from common.bus.instant import Instant
 from integrator import commands, merge, merge_state
 from integrator.live_rig import rig_change
-from integrator.people import one_of_all
+from integrator.people import hidden_person, one_of_all
 from integrator.people.lived_instant import Merged, ended, lived, of_one
 from integrator.people.recognition import State, recognised, seen_of
 from integrator.person import Waiting
@@ -30,7 +30,9 @@ def step(
     state, owned = recognised(state, instant, now_s)
     own = [of_one(instant, indices) for indices in owned]
     merged = [
-        lived(life, each, seen_of(people, indices), now_s)
+        hidden_person.lived(life, each, instant, now_s)
+        if state.room.alone and max(indices) < 0
+        else lived(life, each, seen_of(people, indices), now_s)
         for life, each, indices in zip(state.lives, own, owned, strict=True)
     ]
     state = state._replace(lives=ended([life for life, _, _ in merged], now_s))
