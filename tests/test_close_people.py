@@ -12,7 +12,15 @@ from common.body.observation import Landmarks
 from viewer.landmarks.landmark_window import GREY, Window
 from viewer.landmarks.own_landmarks import look_in, window_of_joints
 from viewer.landmarks.person_mask import LandmarkResult
-from viewer.people.close_people import are_close, are_together, beside, cheapest, is_in, without
+from viewer.people.close_people import (
+    AROUND,
+    are_together,
+    beside,
+    cheapest,
+    close_part_px,
+    is_in,
+    without,
+)
 from viewer.people.known_people import People, Track
 
 COSTS = st.integers(0, 4).flatmap(
@@ -78,9 +86,13 @@ def test_people_are_close_where_one_is_in_the_others_window() -> None:
         tracks = tuple(Track(n, figure(x), 0.0) for n, x in enumerate(columns))
         return People(tracks, 0, len(columns))
 
-    assert are_close(people(60.0, 100.0))
-    assert not are_close(people(60.0, 260.0))
-    assert not are_close(people(60.0))
+    found = close_part_px(people(60.0, 100.0, 260.0))
+    assert found is not None
+    beyond = AROUND * 100.0
+    assert found[0].tolist() == pytest.approx([48.0 - beyond, 45.0 - beyond])
+    assert found[1].tolist() == pytest.approx([112.0 + beyond, 145.0 + beyond])
+    assert close_part_px(people(60.0, 260.0)) is None
+    assert close_part_px(people(60.0)) is None
 
 
 @pytest.mark.parametrize(

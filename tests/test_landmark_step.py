@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from test_own_landmarks import acted, nobody, seen
 
-from common.body.body import JOINT_NAMES
+from common.body.body import JOINT_NAMES, Floats
 from common.body.observation import Landmarks
 from common.config.part_settings import SilhouetteSettings
 from common.config.settings import Settings
@@ -56,6 +56,7 @@ class Scene:
         self.people = list(people)
         self.own: Callable[..., Landmarks | None] = lambda: self.people[0] if self.people else None
         self.searches: list[float] = []
+        self.part_searches: list[float] = []
         self.at_s = 0.0
         monkeypatch.setattr(landmark_step, "own_landmarks", self._own)
         monkeypatch.setattr(landmark_step, "look_in", self._look_in)
@@ -70,8 +71,8 @@ class Scene:
         best = min(near, key=lambda each: abs(column(each) - middle), default=None)
         return LandmarkResult(best)
 
-    def _people_in(self, _: Image) -> list[Detection]:
-        self.searches.append(self.at_s)
+    def _people_in(self, _: Image, part_px: Floats | None = None) -> list[Detection]:
+        (self.searches if part_px is None else self.part_searches).append(self.at_s)
         return [detected(column(each)) for each in self.people]
 
     def step(
@@ -425,32 +426,32 @@ def test_of_two_who_are_close_the_one_who_is_not_due_is_carried_on(
 def test_of_people_who_are_close_a_report_does_not_wait_for_the_search(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """It is of every frame where they meet, and serves the next: a new person, and where each
-    is."""
+    """It serves the next: a new person, and where each is."""
     scene = Scene(monkeypatch, standing(100.0), standing(135.0))
     monkeypatch.setattr(close_people, "look_in", scene._look_in)
     tracks = tuple(Track(n, each, 0.9) for n, each in enumerate(scene.people))
-    state = State(People(tracks, 0, 2), 0.9, detected=())
+    state = State(People(tracks, 0, 2), 0.7, detected=())
     scene.people.append(standing(260.0))
     state, shown = step(state, frame(1.0), EMPTY, SETTINGS, alone=False)
     assert scene.searches == []
     assert columns(shown) == pytest.approx([100.0, 135.0], abs=3.0)
     state, shown = scene.step(state, 1.0 + 1 / 15)
     assert columns(shown) == pytest.approx([100.0, 135.0, 260.0], abs=3.0)
-    assert len(scene.searches) == 2
+    assert (len(scene.searches), len(scene.part_searches)) == (1, 1)
 
 
 @pytest.mark.parametrize(
-    ("followed", "second_px", "searches"), [("all", 135.0, 9), ("all", 165.0, 2), (1, 165.0, 9)]
+    ("followed", "second_px", "parts"), [("all", 135.0, 7), ("all", 165.0, 0), (1, 165.0, 7)]
 )
 def test_of_people_who_are_close_and_do_not_meet_the_picture_is_searched_four_times_a_second(
-    monkeypatch: pytest.MonkeyPatch, followed: Literal[1, "all"], second_px: float, searches: int
+    monkeypatch: pytest.MonkeyPatch, followed: Literal[1, "all"], second_px: float, parts: int
 ) -> None:
-    """In 0.6 s; in every frame where one of them alone is followed."""
+    """In 0.6 s; in every frame between, where they meet or one of them alone is followed, the part
+    of it where they are."""
     scene = Scene(monkeypatch, standing(100.0), standing(second_px))
     monkeypatch.setattr(close_people, "look_in", scene._look_in)
     tracks = tuple(Track(n, each, 1.0) for n, each in enumerate(scene.people))
     state = State(People(tracks, 0, 2), 1.0)
     for at in range(1, 10):
         state, _ = scene.step(state, 1.0 + at / 15, settings=Settings(people=followed))
-    assert len(scene.searches) == searches
+    assert (len(scene.searches), len(scene.part_searches)) == (2, parts)

@@ -40,7 +40,7 @@ def test_bytes_are_multiplied_as_exactly_as_floats() -> None:
     """On processors without VNNI sums of bytes' products saturate unless that is forbidden: a
     person's peak was at -20 for 2."""
     shot, *_ = acted()
-    picture, _ = people_detector._shown(shot.frames[0])
+    picture = people_detector._shown(shot.frames[0], 320 / people_detector.LONG_PX)
     options = onnxruntime.SessionOptions()
     options.graph_optimization_level = onnxruntime.GraphOptimizationLevel.ORT_ENABLE_BASIC
     plain = onnxruntime.InferenceSession(people_detector.NETWORK, options)
@@ -58,6 +58,38 @@ def test_two_people_are_two_detections_and_an_empty_room_is_none() -> None:
     assert len(detected) == 2
     assert min(shares(detected, box, box + np.array([180.0, 0.0]))) > 0.6
     assert people_in(empty) == []
+
+
+def test_in_a_part_of_the_picture_are_those_who_are_whole_in_it_at_the_same_places() -> None:
+    shot, *_ = acted()
+    shown = shot.frames[0][:, 70:250]
+    beside = np.concatenate([shown, shown], axis=1)
+    both = sorted(people_in(beside), key=lambda each: each.corners_px[0, 0])
+    for person in both:
+        low, high = person.corners_px
+        (found,) = people_in(beside, np.stack((low - 30.0, high + 30.0)))
+        assert overlap(found.corners_px, person.corners_px) > 0.8
+        assert np.median(np.linalg.norm(found.joints_px - person.joints_px, axis=1)) < 6.0
+    (low, high), cut = both[0].corners_px, both[1].corners_px[0, 0] + 30.0
+    (left,) = people_in(beside, np.array([low - 30.0, (cut, high[1] + 30.0)]))
+    assert overlap(left.corners_px, both[0].corners_px) > 0.8, "the other one is cut"
+    assert len(people_in(beside, np.array([(-50.0, -50.0), (900.0, 900.0)]))) == 2
+
+
+@pytest.mark.parametrize(
+    ("part", "start", "end"),
+    [
+        ([(100.0, 50.0), (150.0, 150.0)], (85, 40), (165, 160)),
+        ([(300.0, 100.0), (330.0, 140.0)], (280, 100), (320, 140)),
+        ([(-9.0, -9.0), (900.0, 900.0)], (0, 0), (320, 240)),
+    ],
+    ids=["within", "at the right end", "more than all"],
+)
+def test_a_part_is_whole_units_within_the_picture(
+    part: list[tuple[float, float]], start: tuple[int, int], end: tuple[int, int]
+) -> None:
+    found = people_detector._whole_units(np.array(part), 40.0, (240, 320, 3))
+    assert [each.tolist() for each in found] == [list(start), list(end)]
 
 
 @pytest.mark.parametrize(

@@ -8,6 +8,7 @@ from typing import Final, NamedTuple
 import cv2
 import numpy as np
 
+from common.body.body import Floats
 from common.body.observation import Landmarks, Pixel
 from common.config.settings import Settings
 from common.video.pictures import Image
@@ -25,10 +26,10 @@ from viewer.landmarks.own_landmarks import (
 from viewer.landmarks.person_mask import LandmarkResult, Shown
 from viewer.people import known_people, looks_in_turn
 from viewer.people.close_people import (
-    are_close,
     are_together,
     beside,
     cheapest,
+    close_part_px,
     looked_at_alone,
     without,
 )
@@ -51,14 +52,22 @@ IS_OF: Final = 0.3
 """Intersection over union of a detection and a known person's joints from which it is of them."""
 
 
+class Unsearched(NamedTuple):
+    """A picture that is still to be searched for people."""
+
+    picture: Image
+    part_px: Floats | None = None
+    """(2, 2) top left and bottom right of the part that is searched; None: all of it."""
+
+
 class State(NamedTuple):
     """What one frame hands to the next."""
 
     people: People = People()
     searched_s: float = -math.inf
     """Capture time of the last frame whose whole picture was searched for people."""
-    unsearched: Image | None = None
-    """The picture of that frame, while that is still to be done."""
+    unsearched: Unsearched | None = None
+    """The picture that is still to be searched, of that frame or a later one where people meet."""
     detected: tuple[Detection, ...] | None = None
     """The people in it, for the next frame; None: it was not searched, or they have served."""
     looks: tuple[LastLook, ...] = ()
@@ -109,22 +118,23 @@ def step(
     state, is_first = searched(state), state.searched_s == -math.inf
     people = known_people.expected_at(state.people, root_px)
     model = LandmarkModel(network_of(settings.landmarks), alone and not frame.hurried)
-    close = not frame.hurried and are_close(people)
+    close_px = None if frame.hurried else close_part_px(people)
     if due is not None:
-        state = _due(state, frame, SEARCH_S if people.are_seen and not close else URGENT_S)
+        is_calm = people.are_seen and close_px is None
+        state = _due(state, frame, SEARCH_S if is_calm else URGENT_S)
     rests = state.unsearched is not None
     carried = looks_in_turn.carried(state.looks, due, frame.captured_s, rests=rests)
-    if close:
+    if close_px is not None:
         looks, new = looked_at_alone(frame.picture, people, model, state.detected or (), carried)
+        if due is None:
+            state = _due(state, frame, URGENT_S)
         # One person alone leaves time for it, and must not be taken for who crosses.
-        often = settings.people == 1 or are_together(people)
-        interval_s = 0.0 if often else URGENT_S
+        if state.unsearched is None and (settings.people == 1 or are_together(people)):
+            state = state._replace(unsearched=Unsearched(frame.picture, close_px))
     else:
         looks, new = _looks(frame.picture, seen, people, model, carried), list[LandmarkResult]()
-        interval_s = _interval_s(people, looks[people.followed], seen)
-    if due is None:
-        state = _due(state, frame, interval_s)
-    if not close:
+        if due is None:
+            state = _due(state, frame, _interval_s(people, looks[people.followed], seen))
         if is_first or not people.tracks:
             state = searched(state)
         if state.detected is not None:
@@ -152,14 +162,14 @@ def searched(state: State) -> State:
     """
     if state.unsearched is None:
         return state
-    return state._replace(unsearched=None, detected=tuple(people_in(state.unsearched)))
+    return state._replace(unsearched=None, detected=tuple(people_in(*state.unsearched)))
 
 
 def _due(state: State, frame: CapturedFrame, interval_s: float) -> State:
     """The state with a picture to search, where it is time to."""
     if frame.hurried or frame.captured_s < state.searched_s + interval_s:
         return state
-    return state._replace(searched_s=frame.captured_s, unsearched=frame.picture)
+    return state._replace(searched_s=frame.captured_s, unsearched=Unsearched(frame.picture))
 
 
 def _looks(

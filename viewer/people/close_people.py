@@ -7,6 +7,7 @@ from typing import Final
 import cv2
 import numpy as np
 
+from common.body.body import Floats
 from common.body.observation import Landmarks
 from common.video.pictures import Image
 from viewer.landmarks.landmark_window import GREY, Window
@@ -22,6 +23,9 @@ between two frames."""
 IS_NEAR: Final = 0.4
 """Median distance of a detection's joints from a known person's last ones, in the longer side of
 what holds them, from which on they are of another."""
+AROUND: Final = 0.15
+"""How far beyond people's joints the picture is searched for them, in the longer side of what holds
+the largest one's: heads, feet, and what they move between two frames."""
 APART: Final = 0.1
 """Distance of two people's boxes up to which they meet, in the longer side of either."""
 
@@ -52,15 +56,21 @@ def cheapest(costs: Sequence[Sequence[float]], most: float) -> list[int | None]:
     return found
 
 
-def are_close(people: People) -> bool:
-    """Whether any known person reaches into another's window."""
-    if len(people.tracks) < 2:
-        return False
+def close_part_px(people: People) -> Floats | None:
+    """What holds all known people who reach into another's window, or into whose another does: (2,
+    2) top left and bottom right; None where there are none."""
     windows = [(each.landmarks, window_of_joints(each.landmarks)) for each in people.tracks]
-    return any(
-        window is not None and is_in(window, other)
-        for (_, window), (other, _) in permutations(windows, 2)
-    )
+    close = [
+        corners_of(each)
+        for (own, window), (other, _) in permutations(windows, 2)
+        if window is not None and is_in(window, other)
+        for each in (own, other)
+    ]
+    if not close:
+        return None
+    low, high = np.min([each[0] for each in close], axis=0), np.max(close, axis=(0, 1))
+    beyond = AROUND * (np.array(close)[:, 1] - np.array(close)[:, 0]).max()
+    return np.stack((low - beyond, high + beyond))
 
 
 def are_together(people: People) -> bool:

@@ -24,6 +24,9 @@ LEAST: Final = 0.3
 network of landmarks then refuses (docs/measurements.md)."""
 OVERLAP: Final = 0.5
 """Intersection over union of two boxes from which they are of one person."""
+EDGE_PX: Final = 4
+"""Distance from an end of the searched part, in pixels of what the network sees, from which on a
+box may go on beyond it."""
 MOST: Final = 6
 """Upper bound of the number of people in a picture."""
 _SHOULDERS: Final = [POINT["l_shoulder"], POINT["r_shoulder"]]
@@ -57,9 +60,31 @@ class Detection(NamedTuple):
         return window_about(self.joints_px, turn_deg, MARGIN)
 
 
-def people_in(picture: Image) -> list[Detection]:
-    """The people in a picture (H, W, 3), surest first; the coarsest are an eighth of its height."""
-    shown, scale = _shown(picture)
+def people_in(picture: Image, part_px: Floats | None = None) -> list[Detection]:
+    """The people in a picture, surest first; the coarsest are an eighth of its height.
+
+    Args:
+        picture: (H, W, 3)
+        part_px: (2, 2) top left and bottom right of the part that is searched, who reaches out of
+            it is left out; None: all of it. The time that it takes goes with the area.
+    """
+    scale = max(picture.shape[:2]) / LONG_PX
+    if part_px is None:
+        return _people(picture, scale)
+    start, end = _whole_units(part_px, scale * MULTIPLE, picture.shape)
+    beyond, edge_px = np.array(picture.shape[1::-1]), EDGE_PX * scale
+    found = _people(picture[start[1] : end[1], start[0] : end[0]], scale)
+    return [
+        each._replace(corners_px=each.corners_px + start, joints_px=each.joints_px + start)
+        for each in found
+        if not ((start > 0) & (each.corners_px[0] < edge_px)).any()
+        and not ((end < beyond) & (each.corners_px[1] > end - start - edge_px)).any()
+    ]
+
+
+def _people(picture: Image, scale: float) -> list[Detection]:
+    """The people in a picture or a part of it, by their places in that."""
+    shown = _shown(picture, scale)
     centre, size, offset, joints = (
         each[0] for each in opened(NETWORK).run(None, {"picture": shown})
     )
@@ -89,11 +114,26 @@ def overlap(first: Floats, second: Floats) -> float:
     return common / union if union > 0.0 else 0.0
 
 
-def _shown(picture: Image) -> tuple[NDArray[np.uint8], float]:
-    """What the network sees, (1, h, w, 3), black beyond the picture, and the picture's pixels in
-    one of its."""
+def _whole_units(
+    part_px: Floats, unit: float, shape: tuple[int, ...]
+) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """The ends, (2,) each, of whole units of what the network sees about a part of a picture (H, W,
+    3), as far as that reaches."""
+    sides = np.array(shape[1::-1])
+    low, high = part_px
+    lengths = np.minimum(np.ceil((high - low) / unit) * unit, sides)
+    start = np.clip((low + high - lengths) / 2, 0, sides - lengths)
+    return np.round(start).astype(np.intp), np.round(start + lengths).astype(np.intp)
+
+
+def _shown(picture: Image, scale: float) -> NDArray[np.uint8]:
+    """What the network sees, (1, h, w, 3), black beyond the picture.
+
+    Args:
+        picture: (H, W, 3)
+        scale: Its pixels in one of what the network sees.
+    """
     high, wide = picture.shape[:2]
-    scale = max(high, wide) / LONG_PX
     size = round(wide / scale), round(high / scale)
     shrunk = cv2.resize(
         picture, size, interpolation=cv2.INTER_AREA if scale > 1.0 else cv2.INTER_LINEAR
@@ -101,4 +141,4 @@ def _shown(picture: Image) -> tuple[NDArray[np.uint8], float]:
     sides = (-(-side // MULTIPLE) * MULTIPLE for side in size[::-1])
     shown = np.zeros((1, *sides, 3), np.uint8)
     shown[0, : size[1], : size[0]] = shrunk
-    return shown, scale
+    return shown
