@@ -355,7 +355,7 @@ def looks_of(monkeypatch: pytest.MonkeyPatch, alone: bool) -> tuple[track.State,
         return LandmarkResult(landmarks_of(standing()))
 
     monkeypatch.setattr(landmark_step, "own_landmarks", look)
-    monkeypatch.setattr(landmark_step, "people_in", lambda _: [])
+    monkeypatch.setattr(landmark_step, "people_in", lambda *_: [])
     setup = told_from_outside().setup
     settings = msgspec.structs.replace(setup.settings, landmarks="own")
     return viewer(1)._replace(setup=setup._replace(settings=settings, alone=alone)), looks
