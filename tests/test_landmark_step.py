@@ -16,9 +16,9 @@ from common.video.pictures import Image
 from runtime.unfinished.state_codec import packed, unpacked
 from viewer import landmark_step
 from viewer.captured_frame import CapturedFrame
-from viewer.landmark_step import State, _owners, searched, step
+from viewer.landmark_step import State, _is_sure_at, _owners, searched, step
 from viewer.landmarks.landmark_window import Window
-from viewer.landmarks.person_mask import LandmarkResult, Shown
+from viewer.landmarks.person_mask import LandmarkResult, PersonMask, Shown
 from viewer.people import close_people
 from viewer.people.known_people import People, Track, of_one
 from viewer.people.looks_in_turn import LastLook
@@ -56,7 +56,7 @@ class Scene:
         self.people = list(people)
         self.own: Callable[..., Landmarks | None] = lambda: self.people[0] if self.people else None
         self.searches: list[float] = []
-        self.part_searches: list[float] = []
+        self.parts_px: list[Floats] = []
         self.at_s = 0.0
         monkeypatch.setattr(landmark_step, "own_landmarks", self._own)
         monkeypatch.setattr(landmark_step, "look_in", self._look_in)
@@ -72,7 +72,10 @@ class Scene:
         return LandmarkResult(best)
 
     def _people_in(self, _: Image, part_px: Floats | None = None) -> list[Detection]:
-        (self.searches if part_px is None else self.part_searches).append(self.at_s)
+        if part_px is None:
+            self.searches.append(self.at_s)
+        else:
+            self.parts_px.append(part_px)
         return [detected(column(each)) for each in self.people]
 
     def step(
@@ -382,7 +385,7 @@ def test_where_people_are_looked_at_in_turn_a_search_takes_a_turn(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Its frame looks at none of them: the next frame would be late by all that it takes."""
-    scene, state = Scene(monkeypatch, standing(60.0), standing(240.0)), State()
+    scene, state = Scene(monkeypatch, standing(60.0, 0.6), standing(240.0, 0.6)), State()
     for at in range(10):
         state, shown = scene.step(state, at / 15)
     due = shown.number
@@ -396,6 +399,20 @@ def test_where_people_are_looked_at_in_turn_a_search_takes_a_turn(
         looked.append((len(scene.searches) - searches, carried.count(False)))
     assert set(looked) == {(0, 1), (0, 2), (1, 0)}, "both where the other one's look is too old"
     assert sum(searches for searches, _ in looked) == 2, "twice a second"
+
+
+@pytest.mark.parametrize(
+    ("sure", "is_carried", "off_px", "enough"),
+    [(0.6, False, 0, True), (0.4, False, 0, False), (0.4, True, 0, True), (0.6, True, 90, False)],
+)
+def test_who_is_carried_on_is_not_looked_at_where_they_are_detected_at_that_place(
+    sure: float, is_carried: bool, off_px: int, enough: bool
+) -> None:
+    """Who is carried on was surely seen, and is less sure by now."""
+    window = Window(50, 40, 150)
+    mask = PersonMask(np.zeros((48, 48), np.float32), window)
+    look = LandmarkResult(standing(125.0, sure), mask, carried=is_carried)
+    assert _is_sure_at(look, window._replace(left=window.left + off_px)) == enough
 
 
 def test_of_two_who_are_close_the_one_who_is_not_due_is_carried_on(
@@ -426,32 +443,48 @@ def test_of_two_who_are_close_the_one_who_is_not_due_is_carried_on(
 def test_of_people_who_are_close_a_report_does_not_wait_for_the_search(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """It serves the next: a new person, and where each is."""
+    """It is of every frame where they meet, and serves the next: a new person, and where each
+    is."""
     scene = Scene(monkeypatch, standing(100.0), standing(135.0))
     monkeypatch.setattr(close_people, "look_in", scene._look_in)
     tracks = tuple(Track(n, each, 0.9) for n, each in enumerate(scene.people))
-    state = State(People(tracks, 0, 2), 0.7, detected=())
+    state = State(People(tracks, 0, 2), 0.9, detected=())
     scene.people.append(standing(260.0))
     state, shown = step(state, frame(1.0), EMPTY, SETTINGS, alone=False)
     assert scene.searches == []
     assert columns(shown) == pytest.approx([100.0, 135.0], abs=3.0)
     state, shown = scene.step(state, 1.0 + 1 / 15)
     assert columns(shown) == pytest.approx([100.0, 135.0, 260.0], abs=3.0)
-    assert (len(scene.searches), len(scene.part_searches)) == (1, 1)
+    assert len(scene.searches) == 2
 
 
 @pytest.mark.parametrize(
-    ("followed", "second_px", "parts"), [("all", 135.0, 7), ("all", 165.0, 0), (1, 165.0, 7)]
+    ("followed", "second_px", "searches"), [("all", 135.0, 9), ("all", 165.0, 2), (1, 165.0, 9)]
 )
 def test_of_people_who_are_close_and_do_not_meet_the_picture_is_searched_four_times_a_second(
-    monkeypatch: pytest.MonkeyPatch, followed: Literal[1, "all"], second_px: float, parts: int
+    monkeypatch: pytest.MonkeyPatch, followed: Literal[1, "all"], second_px: float, searches: int
 ) -> None:
-    """In 0.6 s; in every frame between, where they meet or one of them alone is followed, the part
-    of it where they are."""
+    """In 0.6 s; in every frame where one of them alone is followed."""
     scene = Scene(monkeypatch, standing(100.0), standing(second_px))
     monkeypatch.setattr(close_people, "look_in", scene._look_in)
     tracks = tuple(Track(n, each, 1.0) for n, each in enumerate(scene.people))
     state = State(People(tracks, 0, 2), 1.0)
     for at in range(1, 10):
         state, _ = scene.step(state, 1.0 + at / 15, settings=Settings(people=followed))
-    assert (len(scene.searches), len(scene.part_searches)) == (2, parts)
+    assert len(scene.searches) == searches
+
+
+@pytest.mark.parametrize(("second_px", "parts"), [(135.0, 7), (165.0, 0)])
+def test_in_turn_only_the_part_where_people_meet_is_searched_in_each_frame(
+    monkeypatch: pytest.MonkeyPatch, second_px: float, parts: int
+) -> None:
+    """The whole picture is four times a second."""
+    scene = Scene(monkeypatch, standing(100.0), standing(second_px))
+    monkeypatch.setattr(close_people, "look_in", scene._look_in)
+    tracks = tuple(Track(n, each, 1.0) for n, each in enumerate(scene.people))
+    state = State(People(tracks, 0, 2), 1.0)
+    for at in range(1, 10):
+        state, _ = scene.step(state, 1.0 + at / 15, settings=Settings(people="all"), due=0)
+    assert (len(scene.searches), len(scene.parts_px)) == (2, parts)
+    assert all((low < (75.0, 60.0)).all() for low, _ in scene.parts_px)
+    assert all((high > (155.0, 180.0)).all() for _, high in scene.parts_px)

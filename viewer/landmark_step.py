@@ -67,7 +67,7 @@ class State(NamedTuple):
     searched_s: float = -math.inf
     """Capture time of the last frame whose whole picture was searched for people."""
     unsearched: Unsearched | None = None
-    """The picture that is still to be searched, of that frame or a later one where people meet."""
+    """The picture that is still to be searched: of that frame, or a part of a later one."""
     detected: tuple[Detection, ...] | None = None
     """The people in it, for the next frame; None: it was not searched, or they have served."""
     looks: tuple[LastLook, ...] = ()
@@ -94,7 +94,8 @@ def step(
     A frame that comes late is skipped, and keeps what is known, where a background shows the
     person; of several people the one is looked at whose last look is the oldest, for nothing else
     keeps them apart. Where people are looked at in turn, a search of the whole picture, which takes
-    two looks' time, takes a turn too: all are carried on in its frame. A single view has no other
+    two looks' time, takes a turn too: all are carried on in its frame; and between those searches
+    only the part of the picture where people are close is searched. A single view has no other
     to rely on: its landmarks are computed even then, with one look instead of two. An outside
     source is asked for one person.
 
@@ -126,10 +127,11 @@ def step(
     carried = looks_in_turn.carried(state.looks, due, frame.captured_s, rests=rests)
     if close_px is not None:
         looks, new = looked_at_alone(frame.picture, people, model, state.detected or (), carried)
-        if due is None:
-            state = _due(state, frame, URGENT_S)
         # One person alone leaves time for it, and must not be taken for who crosses.
-        if state.unsearched is None and (settings.people == 1 or are_together(people)):
+        often = settings.people == 1 or are_together(people)
+        if due is None:
+            state = _due(state, frame, 0.0 if often else URGENT_S)
+        elif often and not rests:
             state = state._replace(unsearched=Unsearched(frame.picture, close_px))
     else:
         looks, new = _looks(frame.picture, seen, people, model, carried), list[LandmarkResult]()
