@@ -13,14 +13,13 @@ from tritrack.starting.job_plan import (
     Plan,
     PlanError,
     board_plan,
-    demo_plan,
     free_name,
-    live_plan,
     name_of_files,
     planned,
     run_plan,
     tasks_of,
 )
+from tritrack.starting.wish_plans import demo_plan, live_plan
 
 RUNS = Path("runs")
 ONE = [Dropped(Path("up/1/dance.MP4"), 120)]

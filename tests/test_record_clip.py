@@ -38,7 +38,10 @@ def test_a_recording_is_a_clip_with_the_time_of_each_frame(
     cameras: tuple[Path, Path], tmp_path: Path
 ) -> None:
     """A second of 20 and of 10 a second; what is read back are the pictures in their order."""
-    facts = record(cameras, tmp_path / "walk")
+    shares: list[float] = []
+    facts = record(cameras, tmp_path / "walk", share=shares.append)
+    assert shares == sorted(shares)
+    assert (shares[0] < 0.3, shares[-1]) == (True, 1.0)
     counts = [facts["cameras"][name]["frames"] for name in ("cam1", "cam2")]
     assert counts[0] == pytest.approx(20, abs=3)
     assert counts[1] == pytest.approx(10, abs=2)

@@ -40,7 +40,7 @@ def test_numbers_are_devices_and_paths_are_videos(
     out = tmp_path / "walk"
     words = ("--camera", 2, "--camera", "b.avi", "--seconds", 5, "--force")
     assert typed(record, "--out", out, *words).exit_code == 0
-    sources, folder, seconds, _, _, force = called.last
+    sources, folder, seconds, _, _, force, _ = called.last
     assert (sources, folder, seconds, force) == ([2, "b.avi"], out, 5.0, True)
 
 

@@ -28,6 +28,7 @@ from calibration.board.board import BOARDS
 from calibration.foreign.toml_rig import toml_text
 from common.config import config_file
 from common.rig.rig_file import load_rig
+from common.video.camera_file import write_times
 from tritrack.starting.start import LOOK_S
 from tritrack.starting.start_desk import Given, StartDesk
 
@@ -191,13 +192,14 @@ def test_a_dropped_video_becomes_a_run_that_is_exported_and_deleted(
 def test_no_serious_fault_of_access_and_nothing_beyond_the_window(
     started: Started, clip: Path
 ) -> None:
-    """By axe-core, with the files in the tray, cameras open, a job that failed and a run."""
+    """By axe-core, with the files in the tray, cameras open, recordings, a failed job and runs."""
     if CHROMIUM is None:
         pytest.skip("no Chromium here: the page is not looked at")
     if not AXE.is_file():
         pytest.skip("no axe-core here: npm install axe-core, or name its axe.min.js by AXE")
     for name in ("walk", "a_run_of_a_long_name_that_has_no_space_to_be_broken_at_2026"):
         written_run(started.runs / name)
+        written_recording(started.runs / ".recorded" / name)
     with open_tab(CHROMIUM, SOFT) as tab:
         for size in SIZES.values():
             looking = Looking(tab, started.address, size)
@@ -225,6 +227,14 @@ def written_run(folder: Path) -> None:
     (folder / "poses.npz").write_bytes(b"")
     told = {"frames": 9, "believed": 0.97, "warnings": ["it is dark"]}
     (folder / "summary.json").write_text(json.dumps(told))
+
+
+def written_recording(folder: Path) -> None:
+    """One without pictures: enough to be listed."""
+    folder.mkdir(parents=True)
+    for camera in ("cam1", "cam2"):
+        (folder / f"{camera}.avi").write_bytes(b"RIFF")
+    write_times(folder, {"cam1": [0.0, 9.5], "cam2": [0.1, 9.4]})
 
 
 def fill_page(looking: Looking, clip: Path) -> None:
@@ -365,6 +375,41 @@ def test_cameras_are_seen_chosen_and_tracked_live(looking: Looking, started: Sta
     assert job_ended(looking) == "done"
     assert looking.until("!!document.querySelector('#runs li')")
     assert looking.ask("document.querySelector('#runs h3').innerText").startswith("live_")
+
+
+@pytest.mark.slow
+def test_cameras_are_recorded_into_a_clip_that_is_tracked(
+    looking: Looking, started: Started
+) -> None:
+    """The clip stands in the tray and in its list; the times of its frames go with it."""
+    assert looking.until("document.querySelectorAll('#cameras li').length == 2")
+    click(looking, "#use-file0")
+    assert looking.ask("document.querySelector('#record').disabled"), "one camera is no clip"
+    click(looking, "#use-file1")
+    looking.ask("document.querySelector('#record-seconds').value = 3")
+    looking.ask("document.querySelector('#record-name').value = 'walk'")
+    assert looking.until("document.querySelector('#record').innerText == 'Record 2 cameras'")
+    click(looking, "#record")
+    assert looking.until("!!document.querySelector('#jobs progress')", WORK_S)
+    assert job_ended(looking) == "done"
+    assert looking.until("document.querySelectorAll('#files li').length == 2"), words(
+        looking, "#tray-says"
+    )
+    assert looking.until("!!document.querySelector('#do-track')", WORK_S)
+    assert "2 cameras" in words(looking, "#recordings")
+    meta = json.loads((started.runs / ".recorded/walk/meta.json").read_text())
+    click(looking, "#do-track")
+    assert looking.until("document.querySelectorAll('#jobs li').length == 2")
+    assert looking.until("!!document.querySelector('#runs h3')", WORK_S), words(looking, "#jobs")
+    assert looking.ask("document.querySelector('#runs h3').innerText") == "walk"
+    times = json.loads((started.runs / ".clips/walk/meta.json").read_text())["capture_s"]
+    assert times == meta["capture_s"]
+    tracked = np.load(started.runs / "walk/poses.npz", allow_pickle=False)
+    assert tracked["time_s"][:5] == pytest.approx(times["cam1"][:5], abs=0.05)
+    click(looking, "#delete-recording-walk")
+    looking.ask("document.querySelector('#asking button[value=yes]').click()")
+    assert looking.until("document.querySelector('#recorded').hidden")
+    assert [*(started.runs / ".recorded").iterdir()] == []
 
 
 @pytest.mark.slow

@@ -1,7 +1,9 @@
 """What is behind the start page, without a server: it goes on whatever fails around it."""
 
+import json
 import sys
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from typing import Any
 from urllib.request import urlopen
@@ -20,7 +22,9 @@ from animator.start.wishes import (
     Delete,
     Demo,
     Drop,
+    Record,
     Report,
+    Take,
     Task,
     Wish,
     Work,
@@ -41,6 +45,7 @@ class Page:
 
     def __init__(self, *wishes: Wish | Chunk) -> None:
         self.told: list[str] = []
+        self.tray: list[str] = []
         self.faults: list[str] = []
         self._wishes = list(wishes)
 
@@ -50,6 +55,7 @@ class Page:
     def show(self, section: Any) -> None:
         if isinstance(section, Tray):
             self.faults = [file.fault for file in section.files]
+            self.tray = [file.name for file in section.files]
 
     def tell(self, message: Any) -> None:
         if isinstance(message, Told):
@@ -194,4 +200,54 @@ def test_no_command_takes_a_runs_name_for_an_option(
     monkeypatch.chdir(tmp_path)
     desk = StartDesk(Given(Path(".")))
     assert Path(desk.hello.runs) == tmp_path
+    desk.close()
+
+
+def all_over(desk: StartDesk, page: Page, queue: JobQueue) -> bool:
+    return turned(desk, page) and all(job.is_over for job in queue.jobs)
+
+
+RECORDS = """
+import os, pathlib, sys
+clip = pathlib.Path(sys.argv[3])
+clip.mkdir(parents=True)
+for camera in ("cam1", "cam2"):
+    (clip / f"{camera}.avi").write_bytes(camera.encode())
+if float(sys.argv[-1]) > 5:
+    (clip / "meta.json").write_text('{"capture_s": {"cam1": [0.0, 0.5], "cam2": [0.25, 0.75]}}')
+"""
+"""Stands in for `tritrack record`: a recording of 5 seconds is never whole."""
+
+
+def test_what_was_recorded_is_in_the_tray_and_in_the_list_until_it_is_deleted(
+    tmp_path: Path, clip: Path
+) -> None:
+    """Files that are in the tray already are left alone; their times go where the videos go."""
+    queue, cameras = JobQueue([sys.executable, "-c", RECORDS]), tuple(clip.glob("cam*.avi"))
+    desk = StartDesk(Given(tmp_path / "runs", cameras), queue)
+    recorded = tmp_path / "runs/.recorded"
+    assert turned(desk, Page())
+    both = ("file0", "file1")
+    for seconds, name in ((4.0, "torn"), (9.0, "walk"), (9.0, "squat")):
+        page = Page(Record(both, seconds, name))
+        assert until(partial(all_over, desk, page, queue))
+        desk._jobs_due_s = 0.0
+        turned(desk, page)
+        turned(desk, page)
+        wanted = [] if name == "torn" else ["walk_cam1.avi", "walk_cam2.avi"]
+        assert page.tray == wanted, name
+    assert sorted(path.name for path in recorded.iterdir()) == ["squat", "walk"]
+    page = Page(Drop(None), Take("squat"), Delete("recording", "walk"), Take("walk"))
+    turned(desk, page)
+    assert page.tray == ["squat_cam1.avi", "squat_cam2.avi"]
+    assert page.told == ["walk is deleted", "there is no recording 'walk' any more"]
+    assert [path.name for path in recorded.iterdir()] == ["squat"]
+    files = desk._uploads.files
+    assert [file.times_s for file in files] == [(0.0, 0.5), (0.25, 0.75)]
+    dropped = [Dropped(file.path, 2, file.times_s, file.recording) for file in reversed(files)]
+    plan = planned(Work("track"), dropped, Known(tmp_path / "runs"))
+    place(plan)
+    (meta,) = (tmp_path / "runs/.clips/squat").glob("meta.json")
+    times = json.loads(meta.read_text())["capture_s"]
+    assert times == {"cam1": [0.25, 0.75], "cam2": [0.0, 0.5]}, "as they were dropped"
     desk.close()

@@ -39,7 +39,9 @@ from animator.start.wishes import (
     Look,
     Open,
     Raise,
+    Record,
     Report,
+    Take,
     Watch,
     Watched,
     Wish,
@@ -134,6 +136,7 @@ WISHES = (
     *(Begin(1, "a.avi", 9), Drop(None), Raise(1), Work("single"), Board("a4"), Demo(), Cancel(1)),
     *(Open("a", "replay"), Export("a", "bvh"), Report("a"), Compare("a", "b"), Delete("run", "a")),
     *(Again(1), Watch(("video0",)), Watched(30.0), Look(on=True), Live(("video0",))),
+    *(Record(("video0", "video2"), 9.5, "walk"), Take("walk")),
 )
 
 

@@ -1,11 +1,12 @@
 """Wishes against what is there now: what is planned, and what is refused."""
 
 import os
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
-from animator.start.wishes import Compare, Export, Live, Open, Report, Work
+from animator.start.wishes import Compare, Export, Live, Open, Record, Report, Work
 from common.config import config_file
 from common.video.pictures import Source, VideoInfo
 from tritrack.starting.job_plan import PlanError
@@ -79,3 +80,45 @@ def test_a_camera_whose_file_the_settings_cannot_name_is_refused(there: There) -
     named = there._replace(sources={"file0": os.fsdecode(b"caf\xe9.avi")})
     with pytest.raises(PlanError, match="rename it"):
         plan_of(Live(("file0",)), named)
+
+
+def test_a_recording_is_of_the_chosen_cameras_in_their_order(there: There) -> None:
+    plan = plan_of(Record(("file0", "video2"), 9.5, "walk"), there)
+    clip = there.runs / ".recorded/walk"
+    cameras = ("--camera", str(there.sources["file0"]), "--camera", "2")
+    assert plan.arguments == ("record", "--out", str(clip), *cameras, "--seconds", "9.5")
+    assert (plan.records, plan.run, plan.kind) == (clip, "", "work")
+    clip.mkdir(parents=True)
+    assert plan_of(Record(("file0", "video2"), 9.5, "walk"), there).records == (
+        there.runs / ".recorded/walk_2"
+    )
+
+
+@pytest.mark.parametrize(
+    ("wish", "says"),
+    [
+        (Record(("video0",), 9.0), "choose two cameras or more"),
+        (Record(("video0", "video9"), 9.0), "of those that are there"),
+        (Record(("video0", "video2"), 0.5), "from 1 to 1200 seconds, got 0.5"),
+        (Record(("video0", "video2"), float("nan")), "got nan"),
+        (Record(("video0", "video2"), 9.0, "../walk"), "other signs than letters"),
+    ],
+)
+def test_what_cannot_be_recorded_is_refused(there: There, wish: Record, says: str) -> None:
+    with pytest.raises(PlanError, match=says):
+        plan_of(wish, there)
+
+
+def test_the_times_of_a_recording_go_with_its_videos_in_whatever_order(there: There) -> None:
+    """Of files that share no clock, and of one that has no times, none are known."""
+    first, second = (
+        replace(file, times_s=times_s, recording="walk")
+        for file, times_s in zip(there.files, ((0.0, 0.5), (0.25, 0.75)), strict=True)
+    )
+    for task in ("track", "person", "board"):
+        plan = plan_of(Work(task), there._replace(files=[second, first]))
+        assert plan.times_s == ((0.25, 0.75), (0.0, 0.5))
+    for other in (replace(second, recording="run"), there.files[1]):
+        plan = plan_of(Work("track"), there._replace(files=[first, other]))
+        assert plan.times_s == ()
+    assert plan_of(Work("track"), there).times_s == ()

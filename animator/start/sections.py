@@ -148,6 +148,21 @@ class Cameras(Section, frozen=True):
     """What it showed so far, and what is still needed."""
 
 
+class ShownRecording(msgspec.Struct, frozen=True):
+    """A clip that the page's cameras recorded."""
+
+    name: str
+    when: str
+    says: str
+    """Number of cameras, and length."""
+
+
+class Recordings(Section, frozen=True):
+    """Newest first."""
+
+    recordings: list[ShownRecording]
+
+
 class ShownCalibration(msgspec.Struct, frozen=True):
     """A kept calibration."""
 

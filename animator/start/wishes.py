@@ -120,9 +120,9 @@ class Compare(Wish, frozen=True):
 
 
 class Delete(Wish, frozen=True):
-    """A run or a calibration shall be deleted; the browser has asked its user."""
+    """A run, calibration or recording shall be deleted; the browser has asked its user."""
 
-    what: Literal["run", "calibration"]
+    what: Literal["run", "calibration", "recording"]
     name: str
 
 
@@ -155,8 +155,24 @@ class Live(Wish, frozen=True):
     """The live page may show small pictures."""
 
 
+class Record(Wish, frozen=True):
+    """A clip shall be recorded by these cameras."""
+
+    cameras: tuple[str, ...]
+    """In the order of their numbers."""
+    seconds: float
+    name: str = ""
+    """Name of the clip; "": the present time."""
+
+
+class Take(Wish, frozen=True):
+    """The videos of a recording shall be in the tray."""
+
+    name: str
+
+
 AnyWish = (Begin | Drop | Raise | Work | Board | Demo | Cancel | Open | Again) | (
-    Export | Report | Compare | Delete | Look | Watch | Watched | Live
+    Export | Report | Compare | Delete | Look | Watch | Watched | Live | Record | Take
 )
 
 

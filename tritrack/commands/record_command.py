@@ -5,7 +5,7 @@ from typing import Annotated, Any
 
 import typer
 
-from runtime.terminal import say
+from runtime.terminal import bar, say
 from tritrack.commands.command_output import JsonWanted, console, tell
 from tritrack.commands.options import Force, writable
 
@@ -41,8 +41,17 @@ def record(
     if not given:
         raise ClipError(no_camera("tritrack record"))
     sources = [int(each) if each.isdecimal() else each for each in given]
-    with stopped_by_signals(console) as stop:
-        facts = record_clip(sources, out, seconds, stop, lambda text: say(console, text), force)
+    with stopped_by_signals(console) as stop, bar(console) as progress:
+        task = progress.add_task("recording", total=1.0)
+        facts = record_clip(
+            sources,
+            out,
+            seconds,
+            stop,
+            lambda text: say(console, text),
+            force,
+            lambda share: progress.update(task, completed=share),
+        )
     tell(facts, json_wanted, "\n".join(lines_of(facts)))
 
 

@@ -30,6 +30,7 @@ def record_clip(
     stop: threading.Event,
     tell: Callable[[str], object],
     force: bool = False,
+    share: Callable[[float], object] = lambda _: None,
 ) -> Facts:
     """Record until the time is over, `stop` is set, a file or the disk is full, or a camera ends.
 
@@ -40,6 +41,7 @@ def record_clip(
         stop: Set to end it.
         tell: Receives what happens.
         force: Whether a clip that is there may be replaced.
+        share: Receives how much of the time is over, in [0, 1], ten times a second.
 
     Returns:
         `folder`, `seconds`, `why` it ended; by camera `frames`, `fps`, `dropped`, `fault`; and
@@ -68,7 +70,13 @@ def record_clip(
             take.begin()
         tell(f"recording {len(takes)} cameras into {folder}, {seconds:.0f} s at most")
         began_s = time.monotonic()
-        why = _watched(takes, folder, began_s + min(seconds, MOST_S), stop)
+
+        def tick() -> bool:
+            done = (time.monotonic() - began_s) / min(seconds, MOST_S)
+            share(min(1.0, done))
+            return done >= 1.0
+
+        why = _watched(takes, folder, tick, stop)
     return _finished(takes, folder, time.monotonic() - began_s, why)
 
 
@@ -83,13 +91,13 @@ def _wait_for(takes: Sequence[CameraTake]) -> None:
 
 
 def _watched(
-    takes: Sequence[CameraTake], folder: Path, until_s: float, stop: threading.Event
+    takes: Sequence[CameraTake], folder: Path, is_over: Callable[[], bool], stop: threading.Event
 ) -> str:
-    """Why the recording ends, when it does."""
+    """Why the recording ends, when it does; `is_over` says when by its time."""
     while True:
         if stop.wait(LOOK_S):
             return "asked to"
-        if time.monotonic() >= until_s:
+        if is_over():
             return "the time is over"
         if over := [take for take in takes if take.is_over]:
             return f"{over[0].name}: {over[0].fault or 'its file is full'}"

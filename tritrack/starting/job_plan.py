@@ -15,8 +15,6 @@ from runtime.store.run_exports import OWN_NAMES
 CLIPS: Final = ".clips"
 """Folder of the runs' own videos, hidden so that `runs/*/` matches runs alone."""
 CALIBRATIONS: Final = ".calibrations"
-DEMO: Final = "demo"
-"""Name of the demo's run."""
 MOST_NAME: Final = 60
 """Characters allowed in the name of a run."""
 NAME: Final = re.compile(rf"[A-Za-z0-9][A-Za-z0-9_-]{{0,{MOST_NAME - 1}}}", re.ASCII)
@@ -26,6 +24,7 @@ SIZE: Final = ("--size", "320x240")
 """The working size of `tritrack single`; that of `tritrack track` is half of it."""
 MARKED_VIEWS: Final = 2
 """Cameras that poles and markers are for."""
+RECORDED_S: Final = (1.0, 1200.0)
 STATURE_M: Final = (0.5, 2.6)
 SQUARE_MM: Final = (1.0, 1000.0)
 OFFSET_S: Final = (-3600.0, 3600.0)
@@ -58,6 +57,10 @@ class Plan(NamedTuple):
     """A file of a run that it writes, to look at or to download."""
     needs: tuple[Path, ...] = ()
     """Files that it reads beside those that its command names."""
+    times_s: tuple[tuple[float, ...], ...] = ()
+    """When the frames of each video of `placed` were taken, on one clock; (): not known."""
+    records: Path | None = None
+    """Folder of the clip that it records."""
 
     @property
     def videos(self) -> tuple[tuple[Path, Path], ...]:
@@ -75,6 +78,10 @@ class Dropped(NamedTuple):
 
     path: Path
     frames: int = 0
+    times_s: tuple[float, ...] = ()
+    """When its frames were taken, on the clock of its recording; (): not known."""
+    recording: str = ""
+    """Files of one recording share a clock."""
 
 
 class Known(NamedTuple):
@@ -138,11 +145,7 @@ def planned(wish: Work, files: Sequence[Dropped], known: Known) -> Plan:
         PlanError: When a name, number or calibration is invalid.
     """
     _refuse_numbers(wish)
-    if wish.name and not NAME.fullmatch(wish.name):
-        raise PlanError(
-            f"the name {wish.name!r} has other signs than letters, digits, _ and -, or is longer "
-            f"than {MOST_NAME}: change it"
-        )
+    refuse_name(wish.name)
     if wish.calibration and wish.calibration not in known.calibrations:
         raise PlanError(f"there is no calibration {wish.calibration!r}: choose one of the list")
     proposed = wish.name or name_of_files([file.path.stem for file in files])
@@ -152,6 +155,19 @@ def planned(wish: Work, files: Sequence[Dropped], known: Known) -> Plan:
     if wish.task in ("poles", "markers"):
         return _marking(wish, files, known.runs, name)
     return _tracking(wish, files, known, name)
+
+
+def refuse_name(name: str) -> None:
+    """Refuse a name that no run can have; "" is proposed by the page.
+
+    Raises:
+        PlanError: When it has other signs, or too many.
+    """
+    if name and not NAME.fullmatch(name):
+        raise PlanError(
+            f"the name {name!r} has other signs than letters, digits, _ and -, or is longer "
+            f"than {MOST_NAME}: change it"
+        )
 
 
 def _refuse_numbers(wish: Work) -> None:
@@ -173,20 +189,22 @@ def _tracking(wish: Work, files: Sequence[Dropped], known: Known, name: str) -> 
         arguments = ("single", str(video), *out)
         title = f"{name}: follow a person with one camera"
         return Plan(title, arguments, ((files[0].path, video),), name, frames=frames)
-    placed = cameras_of(files, folder)
+    placed, times_s = cameras_of(files, folder), times_of(files)
     if wish.calibration:
         placed += ((kept_calibration(known.runs, wish.calibration), folder / "calibration.json"),)
     more = [] if wish.offset_s is None else ["--offset", f"{wish.offset_s:g}"]
     more += ["--people", "all"] if wish.everyone else []
     more += ["--record"] if known.records else []
     title = f"{name}: follow a person with {len(files)} cameras"
-    return Plan(title, ("track", str(folder), *out, *SIZE, *more), placed, name, frames=frames)
+    words = ("track", str(folder), *out, *SIZE, *more)
+    return Plan(title, words, placed, name, frames=frames, times_s=times_s)
 
 
 def _calibrating(wish: Work, files: Sequence[Dropped], runs: Path, name: str) -> Plan:
     made = kept_calibration(runs, name)
     folder = runs / CLIPS / name
     end = ("--out", str(made))
+    report, times_s = made.with_suffix(".txt"), times_of(files)
     placed = cameras_of(files, folder)
     arguments: tuple[str, ...]
     if wish.task == "person":
@@ -200,8 +218,7 @@ def _calibrating(wish: Work, files: Sequence[Dropped], runs: Path, name: str) ->
         file = folder / files[0].path.name
         placed, arguments = ((files[0].path, file),), ("import", str(file))
         title = f"{name}: take over a calibration"
-    report = made.with_suffix(".txt")
-    return Plan(title, ("calibrate", *arguments, *end), placed, report=report)
+    return Plan(title, ("calibrate", *arguments, *end), placed, report=report, times_s=times_s)
 
 
 def _marking(wish: Work, files: Sequence[Dropped], runs: Path, name: str) -> Plan:
@@ -220,6 +237,12 @@ def cameras_of(files: Sequence[Dropped], folder: Path) -> tuple[tuple[Path, Path
         (file.path, folder / f"cam{number}{file.path.suffix.lower()}")
         for number, file in enumerate(files, 1)
     )
+
+
+def times_of(files: Sequence[Dropped]) -> tuple[tuple[float, ...], ...]:
+    """When the frames of each video were taken, where all are of one recording; else ()."""
+    one_clock = len({file.recording for file in files}) == 1
+    return tuple(file.times_s for file in files) if one_clock and files[0].recording else ()
 
 
 def kept_calibration(runs: Path, name: str) -> Path:
@@ -267,16 +290,3 @@ def run_plan(wish: Open | Export | Report | Compare, runs: Path, port: int) -> P
         (wish.page, folder, *page, "--port", str(port)),
         kind="page",
     )
-
-
-def live_plan(settings: Path, known: Known, name: str, needs: tuple[Path, ...] = ()) -> Plan:
-    """The plan of a live run by a settings file, and by what that names."""
-    record = ("--record",) if known.records else ()
-    arguments = ("live", str(settings), "--out", str(known.runs / name), *record)
-    return Plan(f"{name}: live", arguments, run=name, kind="page", needs=needs)
-
-
-def demo_plan(runs: Path) -> Plan:
-    """The plan of the demo, whose page waits for its user."""
-    arguments = ("demo", "--out", str(runs / DEMO))
-    return Plan("a made-up person, live", arguments, run=DEMO, kind="page")

@@ -22,6 +22,8 @@ from animator.start.wishes import (
     Live,
     Look,
     Raise,
+    Record,
+    Take,
     Watch,
     Watched,
     WishError,
@@ -31,6 +33,12 @@ from common.atomic_file import unwritten
 from common.bus.messages import MOST_VIEWS
 from common.video.decoding import Decoder
 from runtime.store.run_exports import OWN_NAMES
+from tritrack.recording_cameras.recorded_clips import (
+    RECORDED,
+    recorded_videos,
+    recording_names,
+    remove_recording,
+)
 from tritrack.starting.aside import Aside
 from tritrack.starting.calibration_list import remove_calibration
 from tritrack.starting.job_plan import PlanError, kept_calibration
@@ -141,6 +149,8 @@ class StartDesk:
                 self._look_at(self._uploads.put_back(path, name))
                 remove(path)
             clean(self._runs, self._queue.keeps)
+        elif isinstance(wish, Take):
+            self._take(wish.name)
         elif isinstance(wish, Cancel):
             self._queue.cancel(wish.job)
         elif isinstance(wish, Look):
@@ -207,7 +217,7 @@ class StartDesk:
         if isinstance(wish, Watched):
             there = there._replace(board=self._lists.watch((), self._board))
         plan = plan_of(wish, there)
-        if isinstance(wish, Live | Watched):
+        if isinstance(wish, Live | Watched | Record):
             self._lists.look(False)  # only one program can hold a camera
         place(plan)
         job = self._queue.add(plan)
@@ -217,21 +227,46 @@ class StartDesk:
         return job
 
     def _delete(self, wish: Delete, page: StartPage) -> None:
-        is_run = wish.what == "run"
-        path = self._runs / wish.name if is_run else kept_calibration(self._runs, wish.name)
+        path, delete = {
+            "run": (self._runs / wish.name, delete_run),
+            "calibration": (kept_calibration(self._runs, wish.name), remove_calibration),
+            "recording": (self._runs / RECORDED / wish.name, remove_recording),
+        }[wish.what]
         if self._queue.uses(path):
             raise PlanError(f"a job uses {wish.name}: end it first")
-        gone = (delete_run if is_run else remove_calibration)(self._runs, wish.name)
+        gone = delete(self._runs, wish.name)
         clean(self._runs, self._queue.keeps)
         text = f"{wish.name} is deleted" if gone else f"there is no {wish.what} {wish.name!r}"
         page.tell(Told(text, gone))
         self._lists.hurry()
+
+    def _take(self, name: str) -> None:
+        """Put the videos of a recording into the tray, in the order of its cameras.
+
+        Raises:
+            PlanError: When there is none of that name.
+            UploadRefused: When one finds no room.
+        """
+        videos = recorded_videos(self._runs, name)
+        if not videos:
+            raise PlanError(f"there is no recording {name!r} any more")
+        for video in videos:
+            self._look_at(self._uploads.put_back(video, f"{name}_{video.name}"))
+
+    def _recorded(self, clip: Path) -> None:
+        """Show a clip that was recorded; one that did not come about leaves nothing."""
+        if clip.name not in recording_names(self._runs):
+            remove(clip)
+        elif not self._uploads.files:
+            self._take(clip.name)
 
     def _show_jobs(self, page: StartPage) -> None:
         ended = self._queue.turn()
         for job in ended:
             if job.plan.report is not None and job.state == "done":
                 job.plan.report.write_text("\n".join(job.progress.lines) + "\n")
+            if job.plan.records is not None:
+                self._recorded(job.plan.records)
         if ended:
             clean(self._runs, self._queue.keeps)
             self._lists.hurry()

@@ -8,6 +8,7 @@ from urllib.parse import unquote
 
 from animator.page.page_server import POLICY, REPORT_POLICY, File
 from common.atomic_file import unwritten
+from common.video.camera_file import write_times
 from tritrack.starting.calibration_list import calibration_file
 from tritrack.starting.job_plan import CALIBRATIONS, CLIPS, Plan, PlanError
 from tritrack.starting.run_list import found_runs, made_by, run_file, run_folder
@@ -38,6 +39,10 @@ def place(plan: Plan) -> None:
             link_or_copy(source, target)
         except OSError as error:
             raise PlanError(unwritten(target, error, "drop the files again")) from error
+    if plan.times_s:
+        videos = [to for _, to in plan.placed]
+        pairs = zip(videos, plan.times_s, strict=False)
+        write_times(videos[0].parent, {video.stem: times_s for video, times_s in pairs})
     for word in plan.arguments:
         if Path(word).parent.name == CALIBRATIONS:
             Path(word).parent.mkdir(parents=True, exist_ok=True)

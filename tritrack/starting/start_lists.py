@@ -11,6 +11,7 @@ from common.video.pictures import Source
 from runtime.store.past_run import PastRunError
 from tritrack.machine_cameras.camera_list import FoundCamera, cameras_of
 from tritrack.machine_cameras.camera_previews import Previews
+from tritrack.recording_cameras.recorded_clips import shown_recordings
 from tritrack.starting.aside import Aside
 from tritrack.starting.calibration_list import shown_calibrations
 from tritrack.starting.run_list import MOST_SHOWN, RunFiles, found_runs, picture_of, shown_runs
@@ -82,6 +83,7 @@ class StartLists:
         pictured = {name: self._drawn[name] for name in self.pictures}
         page.show(shown_runs(runs, pictured))
         page.show(shown_calibrations(self._runs))
+        page.show(shown_recordings(self._runs))
         if (
             self._previews.on
             and not self._previews.watching

@@ -15,6 +15,7 @@ import psutil
 from animator.start.wishes import Begin, Chunk
 from common.atomic_file import unwritten
 from common.bus.messages import MOST_VIEWS
+from tritrack.recording_cameras.recorded_clips import recorded_times
 
 FOLDER: Final = ".uploads"
 OWNER: Final = "owner"
@@ -48,6 +49,10 @@ class Upload:
     got: int = 0
     called: str = ""
     """What its user calls it."""
+    times_s: tuple[float, ...] = ()
+    """When its frames were taken, on the clock of its recording; (): not known."""
+    recording: str = ""
+    """Files of one recording share a clock."""
 
     @property
     def title(self) -> str:
@@ -163,7 +168,8 @@ class Uploads:
         return found
 
     def put_back(self, path: Path, name: str) -> Upload:
-        """Take a file that lies on this disk already, by its former name.
+        """Take a file that lies on this disk already, by its former name, with the times of its
+        frames where they are known.
 
         Raises:
             UploadRefused: When it is one too many, or cannot be linked.
@@ -177,6 +183,8 @@ class Uploads:
         except OSError as error:
             raise UploadRefused(unwritten(path, error, "drop the file again")) from error
         found.got = found.bytes
+        found.times_s = recorded_times(path)
+        found.recording = str(path.parent) if found.times_s else ""
         self.files.append(found)
         return found
 

@@ -4,7 +4,7 @@ import time
 from collections.abc import Mapping, Sequence
 from importlib.util import find_spec
 from pathlib import Path
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from animator.start.wishes import (
     Board,
@@ -13,6 +13,7 @@ from animator.start.wishes import (
     Export,
     Live,
     Open,
+    Record,
     Report,
     Watched,
     Work,
@@ -22,20 +23,21 @@ from common.video.pictures import Source
 from runtime.live.free_ports import free_port
 from runtime.store.run_exports import OWN_NAMES
 from tritrack.machine_cameras.live_settings import live_settings
+from tritrack.recording_cameras.recorded_clips import RECORDED
 from tritrack.starting.calibration_list import calibration_names
 from tritrack.starting.job_plan import (
     CALIBRATIONS,
     CLIPS,
+    RECORDED_S,
     Dropped,
     Known,
     Plan,
     PlanError,
     board_plan,
-    demo_plan,
     free_name,
     kept_calibration,
-    live_plan,
     planned,
+    refuse_name,
     run_plan,
 )
 from tritrack.starting.run_list import run_folder
@@ -43,8 +45,14 @@ from tritrack.starting.start_files import SETTINGS
 from tritrack.starting.tray import Facts, shown_tray
 from tritrack.starting.uploads import Upload
 
-Starting = Work | Board | Demo | Open | Export | Report | Compare | Live | Watched
+Starting = Work | Board | Demo | Open | Export | Report | Compare | Live | Watched | Record
 """A wish that a command follows from."""
+
+
+DEMO: Final = "demo"
+"""Name of the demo's run."""
+FEWEST: Final = 2
+"""Cameras that make a clip."""
 
 
 class There(NamedTuple):
@@ -82,6 +90,8 @@ def plan_of(wish: Starting, there: There) -> Plan:
         return _plan_of_files(wish, there)
     if isinstance(wish, Live):
         return _plan_of_cameras(wish, there)
+    if isinstance(wish, Record):
+        return _plan_of_recording(wish, there)
     if isinstance(wish, Watched):
         if not there.board:
             raise PlanError("no board was shown yet: watch it, and hold it before the cameras")
@@ -112,7 +122,7 @@ def refuse_cameras(cameras: Sequence[str], sources: Mapping[str, Source], least:
         PlanError: When there are too few, one twice, too many, or one that is not there.
     """
     if len(cameras) < least or len({*cameras}) < len(cameras):
-        raise PlanError("choose one camera or more")
+        raise PlanError(f"choose {'two cameras' if least == FEWEST else 'one camera'} or more")
     if len(cameras) > MOST_VIEWS or not {*cameras} <= {*sources}:
         raise PlanError(f"{MOST_VIEWS} cameras at most, of those that are there: look again")
 
@@ -122,10 +132,28 @@ def _plan_of_files(wish: Work, there: There) -> Plan:
         raise PlanError("these files are not for that: drop one video, or two to eight")
     infos = {number: facts.info for number, facts in there.facts.items()}
     files = [
-        Dropped(one.path, info.frames if (info := infos.get(one.number)) else 0)
+        Dropped(
+            one.path,
+            info.frames if (info := infos.get(one.number)) else 0,
+            one.times_s,
+            one.recording,
+        )
         for one in there.files
     ]
     return planned(wish, files, there.known)
+
+
+def _plan_of_recording(wish: Record, there: There) -> Plan:
+    refuse_cameras(wish.cameras, there.sources, least=FEWEST)
+    low, high = RECORDED_S
+    if not low <= wish.seconds <= high:
+        raise PlanError(f"a recording has from {low:g} to {high:g} seconds, got {wish.seconds:g}")
+    refuse_name(wish.name)
+    folder = there.runs / RECORDED
+    taken = {path.name for path in folder.iterdir()} if folder.is_dir() else set()
+    name = free_name(wish.name or time.strftime("clip_%Y-%m-%d_%H%M"), taken)
+    sources = [there.sources[each] for each in wish.cameras]
+    return record_plan(sources, wish.seconds, folder / name)
 
 
 def _plan_of_cameras(wish: Live, there: There) -> Plan:
@@ -143,3 +171,24 @@ def _plan_of_cameras(wish: Live, there: There) -> Plan:
     except UnicodeEncodeError as error:
         raise PlanError("a file's name is no Unicode, which settings must be: rename it") from error
     return live_plan(file, known, name, () if rig is None else (rig,))
+
+
+def live_plan(settings: Path, known: Known, name: str, needs: tuple[Path, ...] = ()) -> Plan:
+    """The plan of a live run by a settings file, and by what that names."""
+    record = ("--record",) if known.records else ()
+    arguments = ("live", str(settings), "--out", str(known.runs / name), *record)
+    return Plan(f"{name}: live", arguments, run=name, kind="page", needs=needs)
+
+
+def record_plan(sources: Sequence[Source], seconds: float, clip: Path) -> Plan:
+    """The plan that records cameras into a clip's folder."""
+    cameras = [word for source in sources for word in ("--camera", str(source))]
+    arguments = ("record", "--out", str(clip), *cameras, "--seconds", f"{seconds:g}")
+    title = f"{clip.name}: record {len(sources)} cameras"
+    return Plan(title, arguments, records=clip)
+
+
+def demo_plan(runs: Path) -> Plan:
+    """The plan of the demo, whose page waits for its user."""
+    arguments = ("demo", "--out", str(runs / DEMO))
+    return Plan("a made-up person, live", arguments, run=DEMO, kind="page")

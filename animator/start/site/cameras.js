@@ -11,6 +11,9 @@ export class Cameras {
     this.on = false;
     at("look").addEventListener("click", () => link.say({ type: "look", on: !this.on }));
     at("live").addEventListener("click", () => link.say({ type: "live", cameras: this.chosen, calibration: at("live-calibration").value, pictures: at("live-pictures").checked }));
+    at("record").addEventListener("click", () => {
+      if (at("record-seconds").reportValidity() && at("record-name").reportValidity()) link.say({ type: "record", cameras: this.chosen, seconds: Number(at("record-seconds").value), name: at("record-name").value });
+    });
     at("watch").addEventListener("click", () => link.say({ type: "watch", cameras: this.watching ? [] : this.chosen }));
     at("watched").addEventListener("click", () => link.say({ type: "watched", square_mm: at("live-square").value === "" ? null : Number(at("live-square").value) }));
     setInterval(() => this.renew(), EVERY_MS);
@@ -37,6 +40,8 @@ export class Cameras {
   draw() {
     at("live").disabled = this.chosen.length === 0;
     at("watch").disabled = this.chosen.length === 0 && !this.watching;
+    at("record").disabled = this.chosen.length < 2;
+    at("record").textContent = this.chosen.length > 1 ? `Record ${this.chosen.length} cameras` : "Record";
     at("live").className = this.chosen.length ? "main-task" : "";
     at("live").textContent = this.chosen.length > 1 ? `Track live with ${this.chosen.length} cameras` : "Track live";
     fill(at("cameras"), this.cameras.map((each) => ({ ...each, number: this.chosen.indexOf(each.camera) + 1, on: this.on })), ({ camera }) => camera, (each) => this.row(each));

@@ -5,13 +5,14 @@ import { Cameras } from "./cameras.js";
 import { showJobs } from "./jobs.js";
 import { isLockedOut, LOCKED_OUT } from "./knock.js";
 import { at } from "./parts.js";
+import { showRecordings } from "./recordings.js";
 import { showRuns } from "./runs.js";
 import { Tray } from "./tray.js";
 import { Uploader } from "./upload.js";
 
 const AGAIN_MS = 500; // between two tries to reach the server
 
-const BEGIN = new Set(["work", "live", "demo", "board", "open", "export", "report", "compare", "watched"]); // wishes that a job follows from
+const BEGIN = new Set(["work", "live", "demo", "board", "open", "export", "report", "compare", "watched", "record"]); // wishes that a job follows from
 
 const link = {
   send(said) { if (link.socket?.readyState === WebSocket.OPEN) link.socket.send(said); },
@@ -42,6 +43,7 @@ const heard = {
   runs: (said) => showRuns(said, hello, link),
   cameras: (said) => cameras.show(said),
   calibrations: (said) => showCalibrations(said, link),
+  recordings: (said) => showRecordings(said, link),
   told: tell,
 };
 
