@@ -107,6 +107,48 @@ def test_two_whose_sight_lines_meet_both_ways_are_not_clear() -> None:
     assert not any(group.is_clear for group in found.groups if -1 not in group.indices)
 
 
+def gap(one: tuple[int, int], other: tuple[int, int], mean_m: float) -> Gap:
+    """Of two tracks, each a view and a number."""
+    return Gap((one, other), mean_m, INSTANTS, mean_m)
+
+
+def test_strangers_are_grouped_so_that_all_gaps_together_are_least() -> None:
+    """The nearest two are of different people: the two that they leave are farther apart."""
+    gaps = (
+        gap((0, 0), (1, 0), 0.031),
+        gap((0, 0), (1, 1), 0.039),
+        gap((0, 1), (1, 0), 0.038),
+        gap((0, 1), (1, 1), 0.079),
+    )
+    found = owned(RIG, BOTH, [], 1.0, gaps)
+    assert sorted(group.indices for group in found.groups) == [(0, 1), (1, 0)]
+
+
+def test_strangers_of_three_views_are_grouped_where_all_their_sight_lines_meet() -> None:
+    """The third view's meets those of the first and not of the second."""
+    rig = msgspec.structs.replace(RIG, cameras=(*RIG.cameras, RIG.cameras[0]))
+    for third_m, expected in ((0.05, [(0, 0, 0)]), (0.2, [(-1, -1, 0), (0, 0, -1)])):
+        gaps = (
+            gap((0, 0), (1, 0), 0.03),
+            gap((0, 0), (2, 0), 0.04),
+            gap((1, 0), (2, 0), third_m),
+        )
+        people = [[FIRST[0]], [FIRST[1]], [FIRST[0]]]
+        found = owned(rig, people, [], 1.0, gaps)
+        assert sorted(group.indices for group in found.groups) == expected
+
+
+@pytest.mark.parametrize(("rival_m", "own"), [(0.021, -1), (0.05, 0)], ids=["clearly", "hardly"])
+def test_a_newcomer_who_is_nearer_to_another_is_not_taken_for_who_that_view_lacks(
+    rival_m: float, own: int
+) -> None:
+    """View 2 shows the known person and one who has just come, view 1 the latter alone."""
+    known = life(1, (LEFT_M[0] + 1.0, LEFT_M[1]))._replace(tracks=(9, 0))
+    assert cost_of(RIG.cameras[0], 0, known, FIRST[0], 1.0) == np.inf
+    gaps = gap((0, 0), (1, 0), 0.06), gap((0, 0), (1, 1), rival_m)
+    assert owned(RIG, [[FIRST[0]], BOTH[1]], [known], 1.0, gaps).known == ((own, 0),)
+
+
 def test_a_view_that_does_not_know_who_it_shows_is_asked_by_sight_lines() -> None:
     """The person is expected a metre away in view 2 alone: its sight lines meet view 1's."""
     known = life(1, LEFT_M)._replace(tracks=(0, 9))

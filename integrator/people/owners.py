@@ -195,17 +195,24 @@ def _attach(people: People, known: list[list[int]], gaps: Sequence[Gap]) -> None
     """Give those whom some views show the observations of other views whose sight lines meet
     theirs."""
     apart_m = Apart(people, gaps)
+
+    def joined_m(own: Sequence[int], free: Place) -> float:
+        return max(_unrivalled_m(people, apart_m, each, free) for each in _places(own))
+
     for view in range(len(people)):
         free = sorted(set(range(len(people[view]))) - {own[view] for own in known})
         lacking = [own for own in known if own[view] < 0 and max(own) >= 0]
-        costs = np.array(
-            [
-                [max(apart_m(each, (view, index)) for each in _places(own)) for index in free]
-                for own in lacking
-            ]
-        ).reshape(len(lacking), len(free))
-        for row, column in _assigned(costs / MEETS_M):
+        costs = [[joined_m(own, (view, index)) for index in free] for own in lacking]
+        for row, column in _assigned(np.array(costs).reshape(len(lacking), len(free)) / MEETS_M):
             lacking[row][view] = free[column]
+
+
+def _unrivalled_m(people: People, apart_m: Apart, own: Place, free: Place) -> float:
+    """Gap between a person's observation and a free one of another view; infinite where another of
+    the person's view is clearly nearer to the free one: it shows another, who has just come."""
+    own_m = apart_m(own, free)
+    rivals = (apart_m((own[0], index), free) for index in range(len(people[own[0]])))
+    return np.inf if min(rivals) < min(AMONG * own_m, own_m - WRONG_M) else own_m
 
 
 def _places(own: Sequence[int]) -> list[Place]:
@@ -237,22 +244,22 @@ def _is_person(seen: Observation) -> bool:
 
 
 def _grouped(people: People, unknown: Sequence[Place], gaps: Sequence[Gap]) -> tuple[Group, ...]:
-    """Unknown observations of one person together: those whose sight lines all meet, nearest
-    first."""
+    """Unknown observations of one person together: those whose sight lines all meet, view after
+    view so that the gaps' sum is least. The nearest two first would leave others for each other."""
     of_two = Apart(people, gaps)
 
     def apart_m(one: Place, other: Place) -> float:
         return np.inf if one[0] == other[0] else of_two(one, other)
 
-    groups: list[tuple[Place, ...]] = [(one,) for one in unknown]
-    while len(groups) > 1:
-        least_m, first, second = min(
-            (max(starmap(apart_m, product(one, other))), one, other)
-            for one, other in combinations(groups, 2)
-        )
-        if not least_m < MEETS_M:
-            break
-        groups = [each for each in groups if each not in {first, second}] + [first + second]
+    groups: list[tuple[Place, ...]] = []
+    for view in range(len(people)):
+        own = [one for one in unknown if one[0] == view]
+        costs = [[max(of_two(each, one) for each in group) for one in own] for group in groups]
+        pairs = dict(_assigned(np.array(costs).reshape(len(groups), len(own)) / MEETS_M))
+        groups = [
+            (*group, own[pairs[row]]) if row in pairs else group for row, group in enumerate(groups)
+        ]
+        groups += [(one,) for column, one in enumerate(own) if column not in pairs.values()]
 
     def is_clear(group: tuple[Place, ...]) -> bool:
         own_m = max(starmap(apart_m, combinations(group, 2)), default=0.0)
