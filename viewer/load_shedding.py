@@ -50,10 +50,10 @@ class LoadShedder:
         return msgspec.structs.replace(frame, hurried=True)
 
     def reported(self, view: View) -> None:
-        """Count a report: a late frame has landmarks where one of several people is looked at."""
-        is_in_turn = any(one.carried for one in view.people)
-        self.in_turn += is_in_turn
-        self.frames -= is_in_turn and self._is_hurried
+        """Count a report: a late frame was looked into where anyone in it has landmarks."""
+        self.in_turn += any(one.carried for one in view.people)
+        is_looked_into = any(one.landmarks is not None for one in view.people)
+        self.frames -= is_looked_into and self._is_hurried
 
     def odd(self, frames: int) -> tuple[str, ...]:
         """The reports at the end of that many frames; none where few were affected."""
