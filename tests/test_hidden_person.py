@@ -91,10 +91,24 @@ def test_where_another_view_could_see_them_or_nobody_hides_them_they_are_lost_at
 
 
 def test_before_one_camera_everyone_has_a_number_at_once_in_a_room_without_known_people() -> None:
-    """No other view can tell more. Who comes to them has one after a third of a second."""
+    """No other view can tell more."""
+    assert sorted(Room().see(FRONT, back())) == [1, 2]
+
+
+@pytest.mark.parametrize(("sure", "instants"), [(0.71, 2), (0.69, 5)])
+def test_who_comes_has_a_number_soon_where_the_only_view_shows_them_surely(
+    sure: float, instants: int
+) -> None:
+    """Else after a third of a second."""
     room = Room()
-    assert sorted(room.see(FRONT, back())) == [1, 2]
-    assert [len(room.see(FRONT, back(), back(AWAY_M, 2))) for _ in range(6)] == [2] * 5 + [3]
+    room.see(FRONT, back())
+    comes = back(AWAY_M, 2)[0]
+    assert comes is not None
+    assert comes.landmarks is not None
+    looks = msgspec.structs.replace(comes.landmarks, confidence=(sure,) * 15)
+    own = [msgspec.structs.replace(comes, landmarks=looks), None]
+    counts = [len(room.see(FRONT, back(), own)) for _ in range(instants + 1)]
+    assert counts == [2] * instants + [3]
 
 
 def test_of_an_unsure_body_nothing_is_predicted() -> None:

@@ -4,6 +4,8 @@ import math
 from collections.abc import Sequence
 from typing import Final, NamedTuple
 
+import numpy as np
+
 from common.body.observation import Observation
 from common.bus.instant import Instant
 from common.bus.messages import MOST_PEOPLE
@@ -12,7 +14,7 @@ from integrator.people import corrections, owners
 from integrator.people.corrections import Double, Swap, alone_in
 from integrator.people.known_life import NO_TRACK, Life
 from integrator.people.owners import Group
-from integrator.people.sight_gaps import Gap, with_instant
+from integrator.people.sight_gaps import Gap, People, with_instant
 from integrator.rig.undistortion import undistorted_instant, undistorted_rig
 
 MOST: Final = MOST_PEOPLE + 1
@@ -22,6 +24,12 @@ FIRST: Final = 1
 """The first person's number; 0 is that of a run that follows one person."""
 BORN_S: Final = 1.0 / 3.0
 """How long views must show a new person before they get a number, seconds."""
+
+
+SOON_S: Final = 2.0 / 15.0
+"""The same where the only view shows them surely: mean confidence of the landmarks above SURELY,
+which two people seen as one hardly have."""
+SURELY: Final = 0.7
 
 
 class Coming(NamedTuple):
@@ -78,7 +86,7 @@ def recognised(state: State, instant: Instant, now_s: float) -> tuple[State, lis
         tracks = _tracks(people, group.indices)
         since_s = next((one.since_s for one in state.coming if one.tracks == tracks), now_s)
         shown_s = now_s - since_s + 0.5 * state.room.period_s
-        if shown_s < _wait_s(group, state) or len(lives) >= MOST:
+        if shown_s < _wait_s(group, people, state) or len(lives) >= MOST:
             coming.append(Coming(tracks, since_s))
             continue
         lives.append(born(state.room, fresh, tracks, now_s))
@@ -88,11 +96,18 @@ def recognised(state: State, instant: Instant, now_s: float) -> tuple[State, lis
     return state, indices
 
 
-def _wait_s(group: Group, state: State) -> float:
+def _wait_s(group: Group, people: People, state: State) -> float:
     """How long a new person must be shown: not at all where no person is known and it is clear, or
     there is no other view that could tell."""
-    is_clear = group.is_clear or state.room.alone
-    return 0.0 if is_clear and not state.lives else BORN_S
+    alone = state.room.alone
+    if (group.is_clear or alone) and not state.lives:
+        return 0.0
+    seen = [one for one in seen_of(people, group.indices) if one is not None]
+    is_sure = all(
+        one.landmarks is not None and float(np.mean(one.landmarks.confidence)) > SURELY
+        for one in seen
+    )
+    return SOON_S if alone and is_sure else BORN_S
 
 
 def born(room: merge_state.State, number: int, tracks: tuple[int, ...], now_s: float) -> Life:
