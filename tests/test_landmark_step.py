@@ -365,20 +365,23 @@ def test_who_is_not_due_is_not_looked_at_and_goes_on_from_the_last_look(
     assert looked == [1, 0, 0, 1]
 
 
-def test_of_several_people_a_late_frame_shows_one_in_turn_unless_it_is_said_whom(
-    monkeypatch: pytest.MonkeyPatch,
+@pytest.mark.parametrize("is_due", [True, False], ids=["in turn", "without a turn"])
+def test_in_late_frames_several_people_are_carried_on_as_long_as_that_goes(
+    monkeypatch: pytest.MonkeyPatch, is_due: bool
 ) -> None:
     scene, state = Scene(monkeypatch, standing(60.0), standing(240.0)), State()
     for at in range(10):
         state, _ = scene.step(state, at / 15)
     first, second = (each.number for each in state.looks)
     looked = []
-    for at, due in enumerate((None, None, None, first)):
+    for at in range(5):
         late = frame((10 + at) / 15, hurried=True)
+        due = first if is_due else None
         state, shown = step(state, late, EMPTY, SETTINGS, alone=False, due=due)
         seen = {shown.number: shown.followed, **dict(shown.others)}
         looked.append([number for number, result in seen.items() if not result.carried])
-    assert looked == [[first], [second], [first], [first]]
+    assert looked == [[], [], [], [first, second], []]
+    assert len(scene.searches) == 2, "none of late frames"
 
 
 def test_where_people_are_looked_at_in_turn_a_search_takes_a_turn(

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from operator import attrgetter, itemgetter
+from operator import itemgetter
 from typing import Final, NamedTuple
 
 import cv2
@@ -92,8 +92,8 @@ def step(
     """The landmarks of a frame: our own network's, or those that an outside source sent with it.
 
     A frame that comes late is skipped, and keeps what is known, where a background shows the
-    person; of several people the one is looked at whose last look is the oldest, for nothing else
-    keeps them apart. Where people are looked at in turn, a search of the whole picture, which takes
+    person; several people, whom nothing else keeps apart, are carried on in it, or looked at where
+    that cannot be. Where people are looked at in turn, a search of the whole picture, which takes
     two looks' time, takes a turn too: all are carried on in its frame; and between those searches
     only the part of the picture where people are close is searched. A single view has no other
     to rely on: its landmarks are computed even then, with one look instead of two. An outside
@@ -112,10 +112,9 @@ def step(
     if not settings.looks_itself:
         result = LandmarkResult(nearest_landmarks(frame.landmarks, seen.box))
         return State(known_people.of_one(result.landmarks, frame.captured_s)), Shown(result)
-    if frame.hurried and not alone and settings.silhouette.background != "none":
-        if not state.looks:
-            return state, Shown(LandmarkResult(None), state.people.followed)
-        due = min(state.looks, key=attrgetter("at_s")).number if due is None else due
+    is_skipped = frame.hurried and not alone and settings.silhouette.background != "none"
+    if is_skipped and not state.looks:
+        return state, Shown(LandmarkResult(None), state.people.followed)
     state, is_first = searched(state), state.searched_s == -math.inf
     people = known_people.expected_at(state.people, root_px)
     model = LandmarkModel(network_of(settings.landmarks), alone and not frame.hurried)
@@ -123,7 +122,7 @@ def step(
     if due is not None:
         is_calm = people.are_seen and close_px is None
         state = _due(state, frame, SEARCH_S if is_calm else URGENT_S)
-    rests = state.unsearched is not None
+    rests = is_skipped or state.unsearched is not None
     carried = looks_in_turn.carried(state.looks, due, frame.captured_s, rests=rests)
     if close_px is not None:
         looks, new = looked_at_alone(frame.picture, people, model, state.detected or (), carried)

@@ -9,9 +9,9 @@ from viewer.captured_frame import CapturedFrame
 
 LATE: Final = 0.15
 """Delay, in frame periods, up to which a viewer keeps its landmarks."""
-LATE_OF_SEVERAL: Final = 1.0
-"""The same where everyone is followed: without landmarks people cannot be kept apart, so a viewer
-that waits for its turn beside the others keeps them; one that a frame waits for sheds."""
+LATE_OF_SEVERAL: Final = 0.5
+"""The same where everyone is followed: without landmarks people cannot be kept apart, so a late
+viewer carries them on, as far as that goes (`viewer/people/looks_in_turn.py`)."""
 LASTS_S: Final = 1.0 / 3.0
 """Duration of load shedding once begun, seconds: five frames at 15 Hz. At most that many frames
 in a row go without landmarks."""

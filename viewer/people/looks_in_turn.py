@@ -60,9 +60,9 @@ def carried(
         looks: After the frame before.
         due: The number of the person whose turn it is; None: all are looked at.
         at_s: Capture time.
-        rests: The turn is another work's: that one is not looked at either.
+        rests: There is no time for anyone: that one is not looked at either.
     """
-    if due is None or due not in {each.number for each in looks}:
+    if not rests and due not in {each.number for each in looks}:
         return {}
     return {
         each.number: _moved(each, at_s - each.at_s)
