@@ -24,7 +24,7 @@ settings.load_profile("untimed")
 
 MARKS: Final = ("slow", "live")
 LONGEST: Final = (
-    *("readme", "system_wheel", "system_namespaces", "system_live_fallback"),
+    *("readme", "proposal_training", "system_wheel", "system_namespaces", "system_live_fallback"),
     *("person_calibration", "resuming", "performance", "landmark_network", "board_rig"),
     *("system_commands", "lockstep", "live", "marking"),
 )
