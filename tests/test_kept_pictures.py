@@ -3,7 +3,7 @@
 import shutil
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -64,17 +64,23 @@ def test_a_viewer_that_is_started_again_begins_a_further_file(tmp_path: Path) ->
     assert len(levels_of(tmp_path / "cam2.avi")) == 3
 
 
-def test_a_slow_disk_drops_pictures_and_holds_nobody_up(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """The oldest that wait are dropped; the times are of those that were written."""
-    begin, write = threading.Event(), CameraFile.write
+def slow_down(monkeypatch: pytest.MonkeyPatch, wait: Callable[[], object]) -> None:
+    """Let each picture wait before it is written."""
+    write = CameraFile.write
 
     def slow(file: CameraFile, shown: Any, taken_s: float) -> None:
-        begin.wait(5.0)
+        wait()
         write(file, shown, taken_s)
 
     monkeypatch.setattr(CameraFile, "write", slow)
+
+
+def test_a_slow_disk_drops_pictures_and_holds_no_one_up(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The oldest that wait are dropped; the times are of those that were written."""
+    begin = threading.Event()
+    slow_down(monkeypatch, lambda: begin.wait(5.0))
     monkeypatch.setattr(kept_pictures, "WAITING_BYTES", 1)
     with KeptPictures(tmp_path, 2, 15.0) as kept:
         kept.take(picture(0), 5.0)
@@ -119,13 +125,7 @@ def test_a_disk_that_hangs_holds_up_the_end_for_a_bounded_time(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """What still waits after that is not written."""
-    write = CameraFile.write
-
-    def slow(file: CameraFile, shown: Any, taken_s: float) -> None:
-        time.sleep(0.2)
-        write(file, shown, taken_s)
-
-    monkeypatch.setattr(CameraFile, "write", slow)
+    slow_down(monkeypatch, lambda: time.sleep(0.2))
     monkeypatch.setattr(kept_pictures, "LAST_S", 0.3)
     with KeptPictures(tmp_path, 2, 15.0) as kept:
         keep(kept, 20)

@@ -16,10 +16,10 @@ from common.video.pictures import Image
 from runtime.unfinished.state_codec import packed, unpacked
 from viewer import landmark_step
 from viewer.captured_frame import CapturedFrame
-from viewer.landmark_step import State, _is_sure_at, _owners, searched, step
+from viewer.landmark_step import State, searched, step
 from viewer.landmarks.landmark_window import Window
-from viewer.landmarks.person_mask import LandmarkResult, PersonMask, Shown
-from viewer.people import close_people
+from viewer.landmarks.person_mask import LandmarkResult, Shown
+from viewer.people import close_people, detected_again
 from viewer.people.known_people import People, Track, of_one
 from viewer.people.looks_in_turn import LastLook
 from viewer.people.people_detector import Detection
@@ -59,7 +59,8 @@ class Scene:
         self.parts_px: list[Floats] = []
         self.at_s = 0.0
         monkeypatch.setattr(landmark_step, "own_landmarks", self._own)
-        monkeypatch.setattr(landmark_step, "look_in", self._look_in)
+        for module in (landmark_step, detected_again):
+            monkeypatch.setattr(module, "look_in", self._look_in)
         monkeypatch.setattr(landmark_step, "people_in", self._people_in)
 
     def _own(self, *_: Any, **__: Any) -> LandmarkResult:
@@ -199,16 +200,6 @@ def test_while_the_followed_person_is_out_of_sight_no_other_takes_the_place(
     assert shown.followed.landmarks is scene.people[0]
 
 
-def test_a_detection_shows_the_known_person_whom_it_overlaps_most_and_far_ones_none() -> None:
-    """Of two who stand close each has their own, in whatever order they are detected."""
-    people = People((Track(4, standing(100.0), 0.0), Track(9, standing(116.0), 0.0)), 4, 10)
-    owners = _owners(
-        [detected(118.0), detected(98.0), detected(280.0)], people, LandmarkResult(None)
-    )
-    assert owners == [9, 4, None]
-    assert _owners([], people, LandmarkResult(None)) == []
-
-
 def test_the_integrators_person_is_followed(monkeypatch: pytest.MonkeyPatch) -> None:
     scene, state = Scene(monkeypatch, standing(60.0), standing(250.0)), State()
     state, _ = scene.step(state, 0.0)
@@ -216,7 +207,8 @@ def test_the_integrators_person_is_followed(monkeypatch: pytest.MonkeyPatch) -> 
     scene.own = lambda: standing(250.0)
     scene.people.reverse()
     scene._look_in = lambda *_: LandmarkResult(standing(60.0))  # type: ignore[method-assign]
-    monkeypatch.setattr(landmark_step, "look_in", scene._look_in)
+    for module in (landmark_step, detected_again):
+        monkeypatch.setattr(module, "look_in", scene._look_in)
     _, shown = scene.step(state, 0.1, root_px=pelvis_px)
     assert (shown.number, [number for number, _ in shown.others]) == (1, [0])
 
@@ -404,20 +396,6 @@ def test_where_people_are_looked_at_in_turn_a_search_takes_a_turn(
     assert sum(searches for searches, _ in looked) == 2, "twice a second"
 
 
-@pytest.mark.parametrize(
-    ("sure", "is_carried", "off_px", "enough"),
-    [(0.6, False, 0, True), (0.4, False, 0, False), (0.4, True, 0, True), (0.6, True, 90, False)],
-)
-def test_who_is_carried_on_is_not_looked_at_where_they_are_detected_at_that_place(
-    sure: float, is_carried: bool, off_px: int, enough: bool
-) -> None:
-    """Who is carried on was surely seen, and is less sure by now."""
-    window = Window(50, 40, 150)
-    mask = PersonMask(np.zeros((48, 48), np.float32), window)
-    look = LandmarkResult(standing(125.0, sure), mask, carried=is_carried)
-    assert _is_sure_at(look, window._replace(left=window.left + off_px)) == enough
-
-
 def test_of_two_who_are_close_the_one_who_is_not_due_is_carried_on(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -461,6 +439,17 @@ def test_of_people_who_are_close_a_report_does_not_wait_for_the_search(
     assert len(scene.searches) == 2
 
 
+def nine_frames_of_two(monkeypatch: pytest.MonkeyPatch, second_px: float, **more: Any) -> Scene:
+    """Two who were known a frame before, and are in each other's windows."""
+    scene = Scene(monkeypatch, standing(100.0), standing(second_px))
+    monkeypatch.setattr(close_people, "look_in", scene._look_in)
+    tracks = tuple(Track(n, each, 1.0) for n, each in enumerate(scene.people))
+    state = State(People(tracks, 0, 2), 1.0)
+    for at in range(1, 10):
+        state, _ = scene.step(state, 1.0 + at / 15, **more)
+    return scene
+
+
 @pytest.mark.parametrize(
     ("followed", "second_px", "searches"), [("all", 135.0, 9), ("all", 165.0, 2), (1, 165.0, 9)]
 )
@@ -468,12 +457,7 @@ def test_of_people_who_are_close_and_do_not_meet_the_picture_is_searched_four_ti
     monkeypatch: pytest.MonkeyPatch, followed: Literal[1, "all"], second_px: float, searches: int
 ) -> None:
     """In 0.6 s; in every frame where one of them alone is followed."""
-    scene = Scene(monkeypatch, standing(100.0), standing(second_px))
-    monkeypatch.setattr(close_people, "look_in", scene._look_in)
-    tracks = tuple(Track(n, each, 1.0) for n, each in enumerate(scene.people))
-    state = State(People(tracks, 0, 2), 1.0)
-    for at in range(1, 10):
-        state, _ = scene.step(state, 1.0 + at / 15, settings=Settings(people=followed))
+    scene = nine_frames_of_two(monkeypatch, second_px, settings=Settings(people=followed))
     assert len(scene.searches) == searches
 
 
@@ -482,12 +466,7 @@ def test_in_turn_only_the_part_where_people_meet_is_searched_in_each_frame(
     monkeypatch: pytest.MonkeyPatch, second_px: float, parts: int
 ) -> None:
     """The whole picture is four times a second."""
-    scene = Scene(monkeypatch, standing(100.0), standing(second_px))
-    monkeypatch.setattr(close_people, "look_in", scene._look_in)
-    tracks = tuple(Track(n, each, 1.0) for n, each in enumerate(scene.people))
-    state = State(People(tracks, 0, 2), 1.0)
-    for at in range(1, 10):
-        state, _ = scene.step(state, 1.0 + at / 15, settings=Settings(people="all"), due=0)
+    scene = nine_frames_of_two(monkeypatch, second_px, settings=Settings(people="all"), due=0)
     assert (len(scene.searches), len(scene.parts_px)) == (2, parts)
     assert all((low < (75.0, 60.0)).all() for low, _ in scene.parts_px)
     assert all((high > (155.0, 180.0)).all() for _, high in scene.parts_px)

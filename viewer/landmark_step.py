@@ -1,7 +1,7 @@
 """A viewer's landmarks, frame by frame: where the network looks, when, and at whom."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from operator import itemgetter
 from typing import Final, NamedTuple
 
@@ -14,7 +14,6 @@ from common.config.settings import Settings
 from common.video.pictures import Image
 from viewer.captured_frame import CapturedFrame
 from viewer.landmarks.landmark_looks import network_of, opened
-from viewer.landmarks.landmark_window import Window, same_place
 from viewer.landmarks.outside_source import nearest_landmarks
 from viewer.landmarks.own_landmarks import (
     SURE,
@@ -28,14 +27,14 @@ from viewer.people import known_people, looks_in_turn
 from viewer.people.close_people import (
     are_together,
     beside,
-    cheapest,
     close_part_px,
     looked_at_alone,
     without,
 )
-from viewer.people.known_people import PEOPLE, Look, People, corners_of, is_person
+from viewer.people.detected_again import looked_again
+from viewer.people.known_people import Look, People, is_person
 from viewer.people.looks_in_turn import LastLook
-from viewer.people.people_detector import NETWORK, Detection, overlap, people_in
+from viewer.people.people_detector import NETWORK, Detection, people_in
 from viewer.room.body_region import Bytes
 from viewer.silhouette.silhouette import Seen, seen_of
 
@@ -44,12 +43,7 @@ SEARCH_S: Final = 0.5
 people."""
 URGENT_S: Final = 0.25
 """The same where the followed person is not surely seen, or another known one is out of sight."""
-WHOLE: Final = 0.05
-"""By how much a look is surer than that in the window where the person is detected, to be kept:
-its own window may hold a part of them."""
 NUMBER: Final = itemgetter(0)
-IS_OF: Final = 0.3
-"""Intersection over union of a detection and a known person's joints from which it is of them."""
 
 
 class Unsearched(NamedTuple):
@@ -115,7 +109,7 @@ def step(
     is_skipped = frame.hurried and not alone and settings.silhouette.background != "none"
     if is_skipped and not state.looks:
         return state, Shown(LandmarkResult(None), state.people.followed)
-    state, is_first = searched(state), state.searched_s == -math.inf
+    state = searched(state)
     people = known_people.expected_at(state.people, root_px)
     model = LandmarkModel(network_of(settings.landmarks), alone and not frame.hurried)
     close_px = None if frame.hurried else close_part_px(people)
@@ -124,7 +118,9 @@ def step(
         state = _due(state, frame, SEARCH_S if is_calm else URGENT_S)
     rests = is_skipped or state.unsearched is not None
     carried = looks_in_turn.carried(state.looks, due, frame.captured_s, rests=rests)
-    if close_px is not None:
+    if close_px is None:
+        state, looks, new = _looked_apart(state, frame, seen, people, model, carried, due)
+    else:
         looks, new = looked_at_alone(frame.picture, people, model, state.detected or (), carried)
         # One person alone leaves time for it, and must not be taken for who crosses.
         often = settings.people == 1 or are_together(people)
@@ -132,14 +128,6 @@ def step(
             state = _due(state, frame, 0.0 if often else URGENT_S)
         elif often and not rests:
             state = state._replace(unsearched=Unsearched(frame.picture, close_px))
-    else:
-        looks, new = _looks(frame.picture, seen, people, model, carried), list[LandmarkResult]()
-        if due is None:
-            state = _due(state, frame, _interval_s(people, looks[people.followed], seen))
-        if is_first or not people.tracks:
-            state = searched(state)
-        if state.detected is not None:
-            looks, new = _looked_again(frame.picture, looks, people, model, state.detected)
     followed = looks[people.followed]
     after, shown = _identified(people, frame.captured_s, looks, new)
     if not shown and not is_person(followed.landmarks):
@@ -173,6 +161,27 @@ def _due(state: State, frame: CapturedFrame, interval_s: float) -> State:
     return state._replace(searched_s=frame.captured_s, unsearched=Unsearched(frame.picture))
 
 
+def _looked_apart(
+    state: State,
+    frame: CapturedFrame,
+    seen: Seen,
+    people: People,
+    model: LandmarkModel,
+    carried: Mapping[int, LandmarkResult],
+    due: int | None,
+) -> tuple[State, dict[int, LandmarkResult], list[LandmarkResult]]:
+    """The looks at people who are apart, by number, and at new ones."""
+    looks, new = _looks(frame.picture, seen, people, model, carried), list[LandmarkResult]()
+    is_first = state.searched_s == -math.inf
+    if due is None:
+        state = _due(state, frame, _interval_s(people, looks[people.followed], seen))
+    if is_first or not people.tracks:
+        state = searched(state)
+    if state.detected is not None:
+        looks, new = looked_again(frame.picture, looks, people, model, state.detected)
+    return state, looks, new
+
+
 def _looks(
     picture: Image,
     seen: Seen,
@@ -197,7 +206,7 @@ def _looks(
         window = window_of_joints(track.landmarks)
         if window is not None:
             alone = without(picture, beside(picture, track.number, known))
-            looks[track.number] = look_in(alone, window, _once(model))
+            looks[track.number] = look_in(alone, window, model._replace(twice=False))
     return looks
 
 
@@ -207,60 +216,6 @@ def _less(seen: Seen, theirs: Bytes | None) -> Seen:
         return seen
     mask = np.asarray(cv2.subtract(seen.mask.view(np.uint8), theirs))
     return seen_of(mask, seen.blobs, 0.0)
-
-
-def _looked_again(
-    picture: Image,
-    looks: dict[int, LandmarkResult],
-    people: People,
-    model: LandmarkModel,
-    detected: Sequence[Detection],
-) -> tuple[dict[int, LandmarkResult], list[LandmarkResult]]:
-    """The looks, taken again where a person is detected elsewhere than in the window, and the looks
-    at people who are detected and not known."""
-    owners = _owners(detected, people, looks[people.followed])
-    looks, new = dict(looks), list[LandmarkResult]()
-    places = {place: each.landmarks for place, each in enumerate(detected)}
-    for place, (detection, number) in enumerate(zip(detected, owners, strict=True)):
-        own = model if number in {None, people.followed} else _once(model)
-        look = None if number is None else looks.get(number)
-        theirs = beside(picture, place, places)
-        if number is None and len(new) < PEOPLE:
-            new.append(look_in(without(picture, theirs), detection.window, own))
-        elif number is not None and not _is_sure_at(look, detection.window):
-            again = look_in(without(picture, theirs), detection.window, own)
-            looks[number] = again if look is None else _better(look, again, detection)
-    return looks, new
-
-
-def _owners(
-    detected: Sequence[Detection], people: People, followed: LandmarkResult
-) -> list[int | None]:
-    """Whom each detection shows, by where the known people were last; None: no one known."""
-    places = {track.number: corners_of(track.landmarks) for track in people.tracks}
-    if not places and is_person(followed.landmarks):
-        places = {people.followed: corners_of(followed.landmarks)}
-    costs = [
-        [1.0 - overlap(each.corners_px, place) for place in places.values()] for each in detected
-    ]
-    numbers = list(places)
-    return [None if n is None else numbers[n] for n in cheapest(costs, 1.0 - IS_OF)]
-
-
-def _is_sure_at(look: LandmarkResult | None, window: Window) -> bool:
-    """Whether a look, or the one that is carried on, was sure, and in about the same window."""
-    if look is None or look.person is None or not (look.carried or look.surety >= SURE):
-        return False
-    return same_place(look.person.window, window)
-
-
-def _better(look: LandmarkResult, again: LandmarkResult, detection: Detection) -> LandmarkResult:
-    """A look, or that at the detection where it is about as sure, or the first shows another."""
-    if again.landmarks is None or look.landmarks is None:
-        return look if again.landmarks is None else again
-    if overlap(corners_of(look.landmarks), detection.corners_px) < IS_OF:
-        return again
-    return look if look.surety > again.surety + WHOLE else again
 
 
 def _identified(
@@ -291,8 +246,3 @@ def _interval_s(people: People, followed: LandmarkResult, seen: Seen) -> float:
     if not people.tracks and seen.box is not None:
         return 0.0
     return SEARCH_S if people.are_seen and followed.surety >= SURE else URGENT_S
-
-
-def _once(model: LandmarkModel) -> LandmarkModel:
-    """The model with one look at a window."""
-    return model._replace(twice=False)
