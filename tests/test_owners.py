@@ -138,14 +138,18 @@ def test_strangers_of_three_views_are_grouped_where_all_their_sight_lines_meet()
         assert sorted(group.indices for group in found.groups) == expected
 
 
-@pytest.mark.parametrize(("rival_m", "own"), [(0.021, -1), (0.05, 0)], ids=["clearly", "hardly"])
+@pytest.mark.parametrize(
+    ("own_m", "rival_m", "own"),
+    [(0.06, 0.021, -1), (0.06, 0.05, 0), (0.06, 0.035, 0), (0.03, 0.012, 0)],
+    ids=["clearly", "hardly", "not by half", "not by two centimetres"],
+)
 def test_a_newcomer_who_is_nearer_to_another_is_not_taken_for_who_that_view_lacks(
-    rival_m: float, own: int
+    own_m: float, rival_m: float, own: int
 ) -> None:
     """View 2 shows the known person and one who has just come, view 1 the latter alone."""
     known = life(1, (LEFT_M[0] + 1.0, LEFT_M[1]))._replace(tracks=(9, 0))
     assert cost_of(RIG.cameras[0], 0, known, FIRST[0], 1.0) == np.inf
-    gaps = gap((0, 0), (1, 0), 0.06), gap((0, 0), (1, 1), rival_m)
+    gaps = gap((0, 0), (1, 0), own_m), gap((0, 0), (1, 1), rival_m)
     assert owned(RIG, [[FIRST[0]], BOTH[1]], [known], 1.0, gaps).known == ((own, 0),)
 
 
