@@ -7,9 +7,11 @@ from unittest.mock import MagicMock
 
 import pytest
 
+from runtime.live.free_ports import free_port
+
 pytest.importorskip("viser", reason="the page is an extra: install tritrack[page]")
 
-from test_retouch import filmed, free_port
+from test_retouch import filmed
 from test_take import ARM
 
 from animator.retouching.controls import AUTO, Controls

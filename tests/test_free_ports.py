@@ -13,7 +13,9 @@ from common.config.part_settings import BusSettings, CameraSettings, PageSetting
 from common.config.settings import Settings
 from runtime.live import free_ports
 from runtime.live.free_ports import (
+    PORTS,
     PortHeld,
+    free_port,
     free_settings,
     own_session,
     ports,
@@ -117,3 +119,22 @@ def test_what_a_port_needs_that_is_not_installed_is_named_with_its_cure(
     free_ports.refuse_held_page(Settings(page=PageSettings(port=0)))
     with pytest.raises(PortHeld, match=r"the page needs websockets: pip install 'tritrack\[page\]"):
         free_ports.refuse_held_page(Settings())
+
+
+def test_a_free_port_is_none_that_an_outgoing_connection_takes(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Linux: ip_local_port_range; RFC 6335, 6: the dynamic ports begin at 49152."""
+    system = Path("/proc/sys/net/ipv4/ip_local_port_range")
+    first = int(system.read_text().split()[0]) if system.is_file() else 49_152
+    found = {free_port() for _ in range(20)}
+    assert len(found) > 1
+    assert all(1024 <= port < first for port in found)
+    with socket.socket() as door:
+        door.bind(("127.0.0.1", PORTS.start))
+        drawn = iter((0, 1))
+        monkeypatch.setattr(free_ports.secrets, "randbelow", lambda _: next(drawn))
+        assert free_port() == PORTS.start + 1
+        monkeypatch.setattr(free_ports.secrets, "randbelow", lambda _: 0)
+        with pytest.raises(PortHeld, match="no free port among 100 from 20000 to 32767: end"):
+            free_port()

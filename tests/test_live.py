@@ -16,11 +16,12 @@ import msgspec
 import numpy as np
 import pytest
 
+from runtime.live.free_ports import free_port
+
 pytest.importorskip("websockets", reason="the page is an extra: install tritrack[page]")
 
 from browser import NotNow, Tab, open_tab, own_address, saved
 from show_page import RIG, pulses, snapshot_at, two_at
-from test_page_server import free_port
 from waiting import until
 from websockets.sync.client import connect
 

@@ -22,6 +22,8 @@ import msgspec
 import numpy as np
 import pytest
 
+from runtime.live.free_ports import free_port
+
 pytest.importorskip("websockets", reason="the page is an extra: install tritrack[page]")
 
 from browser import open_tab, saved
@@ -38,7 +40,6 @@ from pole_room import (
 )
 from rich.console import Console
 from test_live import Looking
-from test_page_server import free_port
 from test_sheet import POLES
 from test_stills import Camera
 from test_suspect_point import clicked_markers, clicked_poles, moved

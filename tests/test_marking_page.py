@@ -13,12 +13,14 @@ import msgspec
 import numpy as np
 import pytest
 
+from runtime.live.free_ports import free_port
+
 pytest.importorskip("websockets", reason="the page is an extra: install tritrack[page]")
 
 from browser import open_tab, own_address
 from foreign_page import foreign_page
 from test_live import CHROMIUM, Looking
-from test_page_server import TOKEN, free_port
+from test_page_server import TOKEN
 from test_sheet import POLES
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import connect

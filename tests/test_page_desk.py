@@ -14,14 +14,13 @@ import numpy as np
 import pytest
 from local_bus import LocalBus
 from rich.console import Console
-from test_page_server import free_port
 
 from common.bus.control_messages import Answer, Command, Wish
 from common.bus.messages import Body, Posture, Status
 from common.bus.process import ProcessContext
 from common.config.part_settings import PageSettings
 from common.config.settings import Settings
-from runtime.live.free_ports import free_settings
+from runtime.live.free_ports import free_port, free_settings
 from runtime.live.launch import nothing_heard
 from runtime.live.page_desk import LAST_S, SAVED, PageDesk
 from runtime.live.recorded import MessageLog

@@ -13,6 +13,8 @@ from typing import NamedTuple
 
 import pytest
 
+from runtime.live.free_ports import free_port
+
 pytest.importorskip("websockets", reason="the page is an extra: install tritrack[page]")
 
 import psutil
@@ -25,12 +27,6 @@ from animator.page.door import Entrance, PageError, cookie_of
 from animator.page.page_server import MOST_ASKED, MOST_BROWSERS, WAITING, PageServer
 
 TOKEN = "a-long-word-that-nobody-guesses"
-
-
-def free_port() -> int:
-    with socket.socket() as trial:
-        trial.bind(("127.0.0.1", 0))
-        return int(trial.getsockname()[1])
 
 
 @pytest.fixture

@@ -12,13 +12,14 @@ import numpy as np
 import pytest
 from rich.console import Console
 
+from runtime.live.free_ports import free_port
+
 pytest.importorskip("mcap", reason="pip install 'tritrack[mcap]'")
 pytest.importorskip("websockets", reason="the page is an extra: install tritrack[page]")
 
 from browser import open_tab
 from staging import RIG
 from test_live import CHROMIUM, SIZES, SOFT, Looking, told
-from test_page_server import free_port
 from test_replaying import body_at, made_up, run, said_at
 
 from animator.page.live import LivePage

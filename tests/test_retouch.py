@@ -1,13 +1,14 @@
 """The retouching page over a real server, and with a real pointer where there is a browser."""
 
 import shutil
-import socket
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+
+from runtime.live.free_ports import free_port
 
 pytest.importorskip("viser", reason="the page is an extra: install tritrack[page]")
 
@@ -27,12 +28,6 @@ from common.notes.notes_file import load_notes, save_notes
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 SIZE = (320, 240)
-
-
-def free_port() -> int:
-    with socket.socket() as trial:
-        trial.bind(("127.0.0.1", 0))
-        return int(trial.getsockname()[1])
 
 
 def filmed() -> Take:

@@ -139,10 +139,14 @@ def test_a_deliberate_end_is_no_failure(
         start_new_session=True,
     )
     if moment == "tracking":
-        assert until(lambda: measured(out))
+        until(lambda: measured(out) or run.poll() is not None)
     else:
-        assert until((out / "log.txt").is_file)
+        until((out / "log.txt").is_file)
         time.sleep(0.5)
+    begun = measured(out) if moment == "tracking" else (out / "log.txt").is_file()
+    if run.poll() is not None or not begun:
+        run.kill()
+        pytest.fail("".join((f"not {moment}\n", *run.communicate(), log_of(out))))
     children = psutil.Process(run.pid).children(recursive=True)
     (os.killpg if whole_group else os.kill)(run.pid, number)
     said, errors = run.communicate(timeout=60)
@@ -180,6 +184,11 @@ def test_what_was_measured_outlives_a_run_that_is_killed(clip: Path, tmp_path: P
     found = open_run(out)
     assert len(found.poses["frame"]) > 5
     assert "cut short" in found.summary["warnings"][0]
+
+
+def log_of(out: Path) -> str:
+    log = out / "log.txt"
+    return log.read_text() if log.is_file() else "no log"
 
 
 def measured(out: Path) -> int:

@@ -13,13 +13,14 @@ import cv2
 import numpy as np
 import pytest
 
+from runtime.live.free_ports import free_port
+
 pytest.importorskip("websockets", reason="the page is an extra: install tritrack[page]")
 
 from browser import open_tab
 from filmed_board import board_picture
 from spoiling import film_of, write_video
 from test_live import CHROMIUM, SIZES, SOFT, Looking
-from test_page_server import free_port
 
 from animator.page.door import Entrance, invitation_of
 from animator.start.start_page import StartPage

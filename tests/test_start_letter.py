@@ -10,12 +10,13 @@ from urllib.request import url2pathname
 
 import pytest
 
+from runtime.live.free_ports import free_port
+
 pytest.importorskip("websockets", reason="the page is an extra: install tritrack[page]")
 
 from browser import open_tab
 from rich.console import Console
 from test_live import CHROMIUM, SIZES, SOFT, Looking
-from test_page_server import free_port
 from waiting import until
 
 from tritrack.starting import start as starting

@@ -9,9 +9,10 @@ from typing import Any
 
 import pytest
 
+from runtime.live.free_ports import free_port
+
 pytest.importorskip("websockets", reason="the page is an extra: install tritrack[page]")
 
-from test_page_server import free_port
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 from websockets.typing import Origin

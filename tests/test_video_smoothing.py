@@ -2,12 +2,14 @@
 
 from collections.abc import Sequence
 
+import msgspec
 import numpy as np
 import pytest
 from filterpy.common import Q_discrete_white_noise
 from filterpy.kalman import KalmanFilter
 
 from common.body.body import JOINT_NAMES, LIMB_ENDS, POSE_INDEX, rest_pose
+from common.body.extremities import EXTREMITY_NAMES, extremities
 from common.body.kinematics import joints
 from common.body.proportions import body_vector, thesis_bdp
 from common.bus.messages import Body
@@ -25,6 +27,8 @@ from runtime.offline.video_smoothing import (
 RIG = paper_rig((320, 240), (400.0, 400.0), (4.5, 4.5))
 N = 60
 TIME_S = np.arange(N) / 25
+BDP = thesis_bdp(1.75)
+TOE = EXTREMITY_NAMES.index("l_toe")
 
 
 def test_places_are_smoothed_as_filterpy_smooths_them() -> None:
@@ -78,7 +82,7 @@ def swinging() -> np.ndarray:
         pose = rest_pose()
         pose[POSE_INDEX["l_shoulder_x"]] = 40.0 * np.sin(2 * np.pi * moment_s)
         pose[POSE_INDEX["y"]] = 0.9
-        every.append(joints(body_vector(thesis_bdp(1.75)), pose))
+        every.append(joints(body_vector(BDP), pose))
     return np.array(every)
 
 
@@ -91,7 +95,9 @@ def bodies_of(joints_m: np.ndarray, unseen: tuple[int, ...] = ()) -> list[Body]:
                 **{name: getattr(body, name) for name in ("frame", "captured_s", "clock_s")},
                 status="tracking",
                 views="1",
+                bdp=BDP,
                 joints_m=tuple(tuple(place) for place in each.tolist()),
+                extremities_m=tuple(tuple(place) for place in extremities(each, 1.75).tolist()),
                 joints_px=tuple(
                     tuple(tuple(pixel) for pixel in project(camera, each).tolist())
                     for camera in RIG.cameras
@@ -129,8 +135,43 @@ def test_a_shaken_body_is_nearer_to_the_true_one_calm_and_rigid() -> None:
 
 def test_joints_in_the_picture_are_those_in_space() -> None:
     for body in calmed(bodies_of(shaken(swinging())), RIG):
-        for camera, pixels in zip(RIG.cameras, body.joints_px, strict=True):
+        every = zip(RIG.cameras, body.joints_px, body.extremities_px, strict=True)
+        for camera, pixels, further_px in every:
             assert np.array(pixels) == pytest.approx(project(camera, np.array(body.joints_m)))
+            ends_px = project(camera, np.array(body.extremities_m))
+            assert np.array(further_px) == pytest.approx(ends_px)
+
+
+def test_feet_hands_and_nose_go_where_their_joints_go() -> None:
+    """A leg that jumps aside for two frames is taken back, and its foot with it."""
+    jumps = swinging()
+    leg = [JOINT_NAMES.index(name) for name in ("l_knee", "l_ankle")]
+    jumps[30:32, leg, 0] += 0.6
+    for body in calmed(bodies_of(jumps), RIG):
+        by_rule_m = extremities(np.array(body.joints_m), 1.75)
+        assert np.array(body.extremities_m) == pytest.approx(by_rule_m, abs=1e-6)
+
+
+def test_a_toe_measured_off_the_rule_stays_off_it_and_one_that_jumps_does_not() -> None:
+    """A foot that is held turned by 8 cm; a frame in which it is seen 20 cm further out."""
+    turned = [
+        msgspec.structs.replace(body, extremities_m=moved(body, 0.28 if n == 30 else 0.08))
+        for n, body in enumerate(bodies_of(swinging()))
+    ]
+    calm = calmed(turned, RIG)
+    off_m = [
+        (body.extremities_m[TOE] - extremities(np.array(body.joints_m), 1.75)[TOE])[0]
+        for body in calm
+    ]
+    assert np.array(off_m) == pytest.approx(0.08, abs=0.03)
+
+
+def moved(body: Body, by_m: float) -> tuple[tuple[float, float, float], ...]:
+    """The extremities, the left toe moved aside."""
+    places = [*body.extremities_m]
+    x, y, z = places[TOE]
+    places[TOE] = (x + by_m, y, z)
+    return tuple(places)
 
 
 def test_who_was_away_is_met_afresh() -> None:

@@ -26,6 +26,7 @@ from common.bus.messages import Performance, Posture
 from runtime.bridges import websocket
 from runtime.bridges.osc import BridgeError
 from runtime.bridges.websocket import WAITING, WebSocket
+from runtime.live.free_ports import free_port
 
 SCRIPTS = Path(__file__).parents[1] / "docs/scripts"
 UNITY = Path(__file__).parent / "data/unity_outside.cs"
@@ -38,12 +39,6 @@ POSTURE = Posture(
     doing="squat",
     event=Performance("walk_in_place", 1, 5, onset_s=0.1, end_s=0.4, posterior=0.9),
 )
-
-
-def free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
 
 
 @pytest.fixture

@@ -4,6 +4,7 @@ import importlib.util
 import re
 import secrets
 import socket
+from contextlib import suppress
 from pathlib import Path
 from typing import Final
 
@@ -17,6 +18,10 @@ from common.video.clip_sources import sources_of
 
 TCP: Final = re.compile(r"(?:tcp|tls)/(?P<host>[^/]+):(?P<port>\d+)")
 SESSION_BYTES: Final = 8
+PORTS: Final = range(20_000, 32_768)
+"""Ports that a run may choose. A system gives outgoing connections ports above these (Linux from
+32,768, others from 49,152), also in the seconds before the run opens its own."""
+MOST_TRIES: Final = 100
 
 
 class PortHeld(ValueError):
@@ -150,7 +155,16 @@ def _trouble(host: str, port: int) -> str:
 
 
 def free_port() -> int:
-    """A port of this machine that no program uses now."""
-    with socket.socket() as door:
-        door.bind(("127.0.0.1", 0))
-        return int(door.getsockname()[1])
+    """A port of this machine that no program uses now, and no outgoing connection takes later.
+
+    Raises:
+        PortHeld: When none is found.
+    """
+    for _ in range(MOST_TRIES):
+        port = PORTS.start + secrets.randbelow(len(PORTS))
+        with socket.socket() as door, suppress(OSError):
+            door.bind(("127.0.0.1", port))
+            return port
+    raise PortHeld(
+        f"no free port among {MOST_TRIES} from {PORTS.start} to {PORTS[-1]}: end other programs"
+    )

@@ -2,7 +2,6 @@
 
 import os
 import shutil
-import socket
 import sys
 import tempfile
 from collections.abc import Callable
@@ -164,10 +163,9 @@ def _bus() -> Finding:
     from common.bus.bus import open_client, open_hub
     from common.bus.control_messages import ClockAnswer, ClockQuestion
     from common.config.part_settings import BusSettings
+    from runtime.live.free_ports import free_port
 
-    with socket.socket() as door:
-        door.bind(("127.0.0.1", 0))
-        settings = BusSettings(endpoint=f"tcp/127.0.0.1:{door.getsockname()[1]}")
+    settings = BusSettings(endpoint=f"tcp/127.0.0.1:{free_port()}")
     with open_hub(settings, "doctor") as hub, open_client(settings, "doctor", 5.0) as client:
         hub.answer(ClockQuestion, lambda _: ClockAnswer(now_s=1.0))
         heard = client.ask(ClockQuestion(viewer=1, ready=False), ClockAnswer, 2.0)
