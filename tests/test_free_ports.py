@@ -1,5 +1,6 @@
 """Ports of a run: what is held is named before anything starts."""
 
+import secrets
 import socket
 import sys
 from pathlib import Path
@@ -133,8 +134,8 @@ def test_a_free_port_is_none_that_an_outgoing_connection_takes(
     with socket.socket() as door:
         door.bind(("127.0.0.1", PORTS.start))
         drawn = iter((0, 1))
-        monkeypatch.setattr(free_ports.secrets, "randbelow", lambda _: next(drawn))
+        monkeypatch.setattr(secrets, "randbelow", lambda _: next(drawn))
         assert free_port() == PORTS.start + 1
-        monkeypatch.setattr(free_ports.secrets, "randbelow", lambda _: 0)
+        monkeypatch.setattr(secrets, "randbelow", lambda _: 0)
         with pytest.raises(PortHeld, match="no free port among 100 from 20000 to 32767: end"):
             free_port()

@@ -9,7 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common.body.body import JOINT_NAMES, Vector
-from common.bus.messages import Body
+from common.body.extremities import extremities
+from common.body.observation import Pixel
+from common.body.proportions import stature
+from common.bus.messages import Body, Point
 from common.notes.notes import Notes, held
 from common.rig.camera import Camera, Rig, centre, project
 from common.rig.upright import Upright, Uprights
@@ -42,7 +45,8 @@ def calmed(
 ) -> Sequence[Body]:
     """The bodies of a video with smooth joints, whose limbs keep their median lengths.
 
-    Where a length deviates, depth is changed more than the place in the picture.
+    Where a length deviates, depth is changed more than the place in the picture. Nose, heels, toes
+    and knuckles go with their joints: by the body's rule, and by how far off it they were measured.
 
     Angles are not changed: they were smoothed as they came. Neither are joints that the user
     placed.
@@ -60,15 +64,16 @@ def calmed(
     stretches = [_of_stretch(some) for seen, some in groupby(bodies, _is_posed) if seen]
     if not stretches:
         return bodies
-    joints_m = np.concatenate(stretches)
+    joints_m, off_rule_m = (np.concatenate(each) for each in zip(*stretches, strict=True))
     skeleton = skeleton_of(joints_m)
     time_s = np.array([body.captured_s for body in bodies if body.joints_m])
     rigid_m = joints_of(skeleton, motion_of(skeleton, joints_m, time_s))
-    rigid = iter(with_lengths(joints_m, rigid_m, centre(rig.cameras[0])))
+    rigid_m = with_lengths(joints_m, rigid_m, centre(rig.cameras[0]))
+    calm_m = iter(zip(rigid_m, off_rule_m, strict=True))
     calm: Kept = [] if kept is None else kept
     views = [*zip(rig.cameras, uprights, strict=True)]
     for body in bodies:
-        calm.append(_with(body, next(rigid), views, notes) if body.joints_m else body)
+        calm.append(_with(body, *next(calm_m), views, notes) if body.joints_m else body)
     return calm
 
 
@@ -143,28 +148,54 @@ def _is_posed(body: Body) -> bool:
     return bool(body.joints_m)
 
 
-def _of_stretch(bodies: Iterable[Body]) -> NDArray[np.float64]:
-    joints_m, time_s = zip(
-        *((np.array(body.joints_m), body.captured_s) for body in bodies), strict=True
-    )
-    return steadied(np.stack(joints_m), np.array(time_s))
+def _of_stretch(bodies: Iterable[Body]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The joints, (n, 15, 3), and the extremities off the body's rule, (n, 7, 3), both smooth."""
+    every = [*bodies]
+    time_s = np.array([body.captured_s for body in every])
+    joints_m = np.array([body.joints_m for body in every])
+    off_m = [_off_rule(body, each) for body, each in zip(every, joints_m, strict=True)]
+    return steadied(joints_m, time_s), steadied(np.array(off_m), time_s)
+
+
+def _off_rule(body: Body, joints_m: NDArray[np.float64]) -> NDArray[np.float64]:
+    """How far the extremities are from where the body's rule has them, (7, 3)."""
+    return np.asarray(np.array(body.extremities_m) - _by_rule(body, joints_m))
+
+
+def _by_rule(body: Body, joints_m: NDArray[np.float64]) -> NDArray[np.float64]:
+    assert body.bdp is not None
+    return extremities(joints_m, stature(body.bdp))
 
 
 def _with(
     body: Body,
     joints_m: NDArray[np.float64],
+    off_rule_m: NDArray[np.float64],
     views: Sequence[tuple[Camera, Upright | None]],
     notes: Notes,
 ) -> Body:
     for name in held(notes, body.frame).joints_px:
         at = JOINT_NAMES.index(name)
         joints_m[at] = body.joints_m[at]
-    pixels = (
-        np.nan_to_num(as_filed(project(camera, joints_m), upright), nan=-1.0)
-        for camera, upright in views
-    )
+    ends_m = _by_rule(body, joints_m) + off_rule_m
     return msgspec.structs.replace(
         body,
-        joints_m=tuple((x, y, z) for x, y, z in joints_m.tolist()),
-        joints_px=tuple(tuple((u, v) for u, v in one.tolist()) for one in pixels),
+        joints_m=_points(joints_m),
+        joints_px=_pixels(joints_m, views),
+        extremities_m=_points(ends_m),
+        extremities_px=_pixels(ends_m, views),
     )
+
+
+def _points(places_m: NDArray[np.float64]) -> tuple[Point, ...]:
+    return tuple((x, y, z) for x, y, z in places_m.tolist())
+
+
+def _pixels(
+    places_m: NDArray[np.float64], views: Sequence[tuple[Camera, Upright | None]]
+) -> tuple[tuple[Pixel, ...], ...]:
+    pixels = (
+        np.nan_to_num(as_filed(project(camera, places_m), upright), nan=-1.0)
+        for camera, upright in views
+    )
+    return tuple(tuple((u, v) for u, v in one.tolist()) for one in pixels)
