@@ -137,7 +137,8 @@ def numpy_torch(**parts: Any) -> Any:
     return SimpleNamespace(
         nn=SimpleNamespace(Linear=Linear, GRU=GRU, functional=functional, utils=utils),
         no_grad=nullcontext,
-        autocast=lambda kind, dtype: nullcontext(),
+        autocast=lambda kind, dtype, enabled: nullcontext(),
+        cpu=SimpleNamespace(_is_avx512_bf16_supported=lambda: False),
         bfloat16=None,
         from_numpy=lambda values: np.asarray(values).view(Tensor),
         relu=lambda x: np.maximum(x, 0),

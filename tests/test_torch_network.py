@@ -51,6 +51,19 @@ def test_what_is_trained_says_what_is_run() -> None:
             assert run_says == pytest.approx(np.asarray(trained_says), abs=0.05)
 
 
+@pytest.mark.parametrize("able", [True, False])
+def test_numbers_are_halved_where_the_processor_reckons_with_halves(able: bool) -> None:
+    """Elsewhere a lesson takes nine times as long."""
+    asked: list[tuple[str, object, bool]] = []
+
+    def autocast(kind: str, dtype: object, enabled: bool) -> None:
+        asked.append((kind, dtype, enabled))
+
+    cpu = SimpleNamespace(_is_avx512_bf16_supported=lambda: able)
+    torch_network.halved(SimpleNamespace(autocast=autocast, bfloat16="half", cpu=cpu))  # type: ignore[arg-type]
+    assert asked == [("cpu", "half", able)]
+
+
 def test_layers_are_copied_not_shared() -> None:
     trained = parts()
     biases = list(layers_of(trained))[1::2]

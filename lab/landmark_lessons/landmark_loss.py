@@ -10,6 +10,7 @@ from torch import nn
 from torch.nn import functional
 
 from lab.landmark_lessons.landmark_planes import masks_of, planes_of
+from lab.training.torch_network import halved
 from synth.picture.composites import Composite
 from synth.picture.picture_examples import SIDE_PX
 from viewer.landmarks.landmark_looks import BINS, CELLS
@@ -28,17 +29,10 @@ GROUP: Final = 64
 """Pictures that are looked at together."""
 
 
-def _halved() -> torch.autocast:
-    """Numbers of half the length, where the processor reckons with them: without its instructions
-    they take fifteen times as long as whole ones."""
-    able = torch.cpu._is_avx512_bf16_supported()
-    return torch.autocast("cpu", dtype=torch.bfloat16, enabled=able)
-
-
 def loss(network: nn.Module, shown: list[Composite]) -> torch.Tensor:
     """Cross entropies of maps, facing, whether a person is there, how sure the maps are, and of
     the person's mask."""
-    with _halved():
+    with halved(torch):
         maps, told, mask = network(planes_of(shown))
     maps, told = maps.float().flatten(2), told.float()
     joints = torch.from_numpy(np.stack([one.joints_px for one in shown]))
