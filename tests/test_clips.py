@@ -572,6 +572,18 @@ def test_a_file_and_a_camera_are_what_they_say_or_what_is_told_of_them(tmp_path:
     assert (first.fps, first.capture_s, second.fps) == (20.0, (0.0, 0.5), 30.0)
 
 
+def test_times_beside_a_video_stand_for_meta_json_where_a_recording_was_killed(
+    tmp_path: Path,
+) -> None:
+    """From the first frame of all on; the last line was not written to its end."""
+    facts = Facts(cam1=VideoInfo(640, 480, 20.0, 0), cam2=VideoInfo(640, 480, 20.0, 0))
+    (tmp_path / "cam1.times.txt").write_text("70.5000\n71.0000\n71.5")
+    (tmp_path / "cam2.times.txt").write_text("70.7500\n71.2500\n71.7500\n")
+    first, second = clip_of_facts(tmp_path, facts).views
+    assert (first.capture_s, second.capture_s) == ((0.0, 0.5), (0.25, 0.75, 1.25))
+    assert (first.fps, second.fps) == (2.0, 2.0)
+
+
 @pytest.mark.parametrize("told", [1, 2])
 def test_lengths_that_differ_are_no_news_where_one_views_times_are_told(
     tmp_path: Path, told: int

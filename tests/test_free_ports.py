@@ -139,3 +139,10 @@ def test_a_free_port_is_none_that_an_outgoing_connection_takes(
         monkeypatch.setattr(secrets, "randbelow", lambda _: 0)
         with pytest.raises(PortHeld, match="no free port among 100 from 20000 to 32767: end"):
             free_port()
+
+
+def test_bus_and_page_get_two_ports(monkeypatch: pytest.MonkeyPatch) -> None:
+    found = iter((20_001, 20_001, 20_002))
+    monkeypatch.setattr(free_ports, "free_port", lambda: next(found))
+    free = free_settings(Settings())
+    assert (free.bus.endpoint, free.page.port) == ("tcp/127.0.0.1:20001", 20_002)

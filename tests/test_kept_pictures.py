@@ -11,9 +11,9 @@ import cv2
 import numpy as np
 import pytest
 
-from common.video.camera_file import CameraFile
+from common.video.camera_file import CameraFile, kept_times
 from viewer import kept_pictures
-from viewer.kept_pictures import FEWEST, KeptPictures, kept_times
+from viewer.kept_pictures import FEWEST, KeptPictures
 
 
 @pytest.fixture(autouse=True)

@@ -189,3 +189,9 @@ def test_a_run_that_was_cut_short_tells_what_its_journal_has(tmp_path: Path) -> 
     journal.close()
     told = open_run(plain).summary
     assert (told["scale_source"], told["posture"]) == (None, "")
+
+
+def test_a_run_of_no_camera_is_refused(run: Path) -> None:
+    none = {"joints_px": np.zeros((3, 0, 22, 2)), "score": np.zeros((3, 0))}
+    said = spoilt(run, camera_names=np.array([], "U4"), seen=np.zeros((3, 0), bool), **none)
+    assert said == f"{run / 'poses.npz'}: camera_names are missing: track it again"

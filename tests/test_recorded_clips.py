@@ -6,6 +6,7 @@ import pytest
 
 from common.video.camera_file import write_times
 from tritrack.recording_cameras.recorded_clips import (
+    finish_recording,
     recorded_times,
     recorded_videos,
     recording_names,
@@ -58,3 +59,16 @@ def test_a_video_whose_times_are_not_known_has_none(runs: Path, meta: str | None
     if meta is not None:
         (video.parent / "meta.json").write_text(meta)
     assert recorded_times(video) == ()
+
+
+def test_a_recording_that_was_killed_is_one_if_two_cameras_left_times(runs: Path) -> None:
+    torn = runs / ".recorded/torn"
+    (torn / "cam1.times.txt").write_text("5.00000\n5.50000\n6.00000\n")
+    finish_recording(torn)
+    assert recording_names(runs) == ["walk"]
+    (torn / "cam2.times.txt").write_text("5.25000\n5.75000\n6.2")
+    finish_recording(torn)
+    assert {*recording_names(runs)} == {"walk", "torn"}
+    assert recorded_times(torn / "cam2.avi") == (0.25, 0.75)
+    finish_recording(runs / ".recorded/walk")
+    assert recorded_times(runs / ".recorded/walk/cam1.avi") == (0.0, 0.5, 1.5)

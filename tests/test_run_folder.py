@@ -156,3 +156,17 @@ def test_a_run_that_kept_no_picture_says_so(tmp_path: Path) -> None:
     notes: list[str] = []
     assert finish_pictures(tmp_path, notes) == {}
     assert notes == [f"no picture was kept in {tmp_path}"]
+
+
+def test_a_run_does_not_replace_the_pictures_that_it_plays(tmp_path: Path) -> None:
+    video = tmp_path / "run/pictures/cam1.avi"
+    video.parent.mkdir(parents=True)
+    video.write_bytes(b"RIFF")
+    link = tmp_path / "link"
+    link.symlink_to(tmp_path / "run")
+    view = ClipView(1, str(link / "pictures/cam1.avi"), (160, 120), (160, 120), 15.0, 3)
+    clip = Clip("room", (view,), 1, None, Meta())
+    for wanted in (True, False):
+        with pytest.raises(LiveRefused, match="pictures, which it would replace: name another"):
+            new_pictures(tmp_path / "run", clip, wanted)
+    assert video.is_file()

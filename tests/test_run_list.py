@@ -40,6 +40,8 @@ def test_runs_are_listed_newest_first_and_what_is_none_is_not(tmp_path: Path) ->
     (tmp_path / "broken").mkdir()
     (tmp_path / "broken/poses.npz").write_bytes(b"")
     (tmp_path / "broken/summary.json").write_text("{")
+    run_in(tmp_path / "deep", 4000.0)
+    (tmp_path / "deep/summary.json").write_text("[" * 100_000)
     shown = shown_runs(found_runs(tmp_path), {"old": 1000.0})
     assert [(run.name, run.frames, run.believed) for run in shown.runs] == [
         ("new", 9, None),
@@ -54,6 +56,8 @@ def test_runs_are_listed_newest_first_and_what_is_none_is_not(tmp_path: Path) ->
         {"frames": "many", "believed": "yes", "warnings": "dark", "trust": 3, "run_of": 7},
         {"run_of": {"command": None, "footage": 3}, "settings": 3},
         {"run_of": {"footage": [None, 3]}, "settings": {"size": "huge"}},
+        {"run_of": {"footage": ["a" * 5000]}},
+        {"run_of": {"footage": ["a\0b"]}},
     ],
 )
 def test_a_summary_of_another_make_is_shown_as_far_as_it_is_understood(

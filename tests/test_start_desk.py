@@ -26,9 +26,11 @@ from animator.start.wishes import (
     Report,
     Take,
     Task,
+    Watched,
     Wish,
     Work,
 )
+from tritrack.starting import start_lists
 from tritrack.starting.job_plan import Dropped, Known, Plan, kept_calibration, planned
 from tritrack.starting.job_queue import Job, JobQueue
 from tritrack.starting.start_desk import Given, StartDesk
@@ -250,4 +252,77 @@ def test_what_was_recorded_is_in_the_tray_and_in_the_list_until_it_is_deleted(
     (meta,) = (tmp_path / "runs/.clips/squat").glob("meta.json")
     times = json.loads(meta.read_text())["capture_s"]
     assert times == {"cam1": [0.25, 0.75], "cam2": [0.0, 0.5]}, "as they were dropped"
+    desk.close()
+
+
+def test_a_recording_whose_command_was_killed_is_in_the_list(tmp_path: Path) -> None:
+    """Also one that was cut short with the page itself."""
+    queue, clip = JobQueue([sys.executable, "-c", "exit(1)"]), tmp_path / "runs/.recorded/walk"
+    desk = StartDesk(Given(tmp_path / "runs"), queue)
+
+    def leave(clip: Path) -> None:
+        clip.mkdir(parents=True)
+        for camera in ("cam1", "cam2"):
+            (clip / f"{camera}.avi").write_bytes(b"RIFF")
+            (clip / f"{camera}.times.txt").write_text("7.00000\n7.50000\n")
+
+    leave(clip)
+    queue.add(Plan("record", (), records=clip))
+    assert until(partial(all_over, desk, Page(), queue))
+    desk._jobs_due_s = 0.0
+    turned(desk, Page())
+    assert (clip / "meta.json").is_file()
+    desk.close()
+    leave(clip.with_name("squat"))
+    StartDesk(Given(tmp_path / "runs")).close()
+    assert (clip.with_name("squat") / "meta.json").is_file()
+
+
+def test_two_recordings_of_one_name_become_two(tmp_path: Path, clip: Path) -> None:
+    queue, cameras = JobQueue([sys.executable, "-c", RECORDS]), tuple(clip.glob("cam*.avi"))
+    desk, both = StartDesk(Given(tmp_path / "runs", cameras), queue), ("file0", "file1")
+    assert turned(desk, Page())
+    turned(desk, Page(Record(both, 9.0, "walk"), Record(both, 9.0, "walk")))
+    folders = [job.plan.records for job in queue.jobs]
+    assert [each.name for each in folders if each] == ["walk", "walk_2"]
+    desk.close()
+
+
+def test_what_the_board_showed_stays_where_calibrating_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """By a number that no board has, or as too many jobs wait: the user need not show it again."""
+    queue = JobQueue([sys.executable, "-c", "input()"])
+    desk, ended = StartDesk(Given(tmp_path / "runs"), queue), list[tuple[object, ...]]()
+
+    def watch(*given: object) -> tuple[Path, ...]:
+        ended.append(given)
+        return ()
+
+    monkeypatch.setattr(desk._lists, "watch", watch)
+    page = Page(Watched(square_mm=4000.0))
+    turned(desk, page)
+    for _ in range(5):
+        queue.add(Plan("waits", ()))
+        queue.turn()
+    full = Page(Watched(square_mm=40.0))
+    turned(desk, full)
+    assert "the side of a square, in mm, must be from 1 to 1000" in page.told[0]
+    assert full.told == ["4 jobs wait already: let one end, or cancel one"]
+    assert ended == []
+    desk.close()
+
+
+def test_a_folder_that_fails_is_told_and_the_page_goes_on(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    desk, page = StartDesk(Given(tmp_path / "runs")), Page()
+
+    def fail(_: Path) -> None:
+        raise OSError(5, "Input/output error")
+
+    monkeypatch.setattr(start_lists, "found_runs", fail)
+    turned(desk, page)
+    assert "Input/output error" in page.told[0]
+    monkeypatch.undo()
     desk.close()

@@ -147,3 +147,19 @@ def test_a_run_of_which_something_is_left_is_not_said_to_be_deleted(
     monkeypatch.setattr(shutil, "rmtree", lambda path, ignore_errors: None)
     with pytest.raises(PlanError, match="walk is left: see that you may write it"):
         delete_run(runs, "walk")
+
+
+def test_a_renamed_run_keeps_its_videos_where_the_folder_is_reached_by_a_link_or_was_moved(
+    runs: Path,
+) -> None:
+    """Commands write where their videos are, whichever way led there."""
+    made_of = {"command": "single", "footage": [str(runs / ".clips/walk/walk.avi")]}
+    (runs / "walk/summary.json").write_text(json.dumps({RUN_OF: made_of}))
+    (runs / "walk").rename(runs / "best")
+    link = runs.parent / "link"
+    link.symlink_to(runs)
+    clean(link, lambda _: False)
+    assert (runs / ".clips/walk/walk.avi").is_file()
+    link.unlink()
+    clean(runs.rename(runs.parent / "moved"), lambda _: False)
+    assert (runs.parent / "moved/.clips/walk/walk.avi").is_file()

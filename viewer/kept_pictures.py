@@ -12,8 +12,6 @@ from common.bus.messages import ViewerNumber
 from common.video.camera_file import SPARE_BYTES, SUFFIX, CameraFile
 from common.video.pictures import Image
 
-TIMES: Final = ".times.txt"
-"""Suffix of the text with the times of a file's pictures, a line each."""
 WAITING_BYTES: Final = 64_000_000
 """Size of the pictures that may wait for a slow disk: two thirds of a second of 1280x720 at 30."""
 FEWEST: Final = 4
@@ -35,8 +33,7 @@ class KeptPictures:
     """Takes a view's pictures from a thread that must not wait, and writes them in one of its own.
 
     Those that find no room are dropped, the oldest first. A viewer that is started again begins a
-    further file: `cam1.avi`, then `cam1_2.avi`. The time of each picture is in a text beside its
-    file at once, so that a viewer which is killed leaves it.
+    further file: `cam1.avi`, then `cam1_2.avi`.
     """
 
     def __init__(self, folder: Path, viewer: ViewerNumber, hz: float) -> None:
@@ -102,25 +99,12 @@ class KeptPictures:
     def _write(self, file: CameraFile, taken: _Taken) -> None:
         """Write one picture and its time; say so where it was the last."""
         file.write(*taken)
-        with file.path.with_suffix(TIMES).open("a", encoding="ascii") as times:
-            times.write(f"{taken.taken_s:.5f}\n")
         why = "its file is full" if file.is_full else ""
         if shutil.disk_usage(self._folder).free < SPARE_BYTES:
             why = "the disk is full"
         if why:
             count = len(file.times_s)
             self._over = f"{why} after {count} pictures: none is kept from then on"
-
-
-def kept_times(folder: Path) -> dict[str, list[float]]:
-    """When the pictures of each file in a folder were taken, seconds of the run, by its name
-    without suffix; files of fewer than two are left out."""
-    found = {}
-    for path in sorted(folder.glob(f"*{TIMES}")):
-        times_s = [float(line) for line in path.read_text(encoding="ascii").split()]
-        if len(times_s) > 1:
-            found[path.name.removesuffix(TIMES)] = times_s
-    return found
 
 
 def _next_file(folder: Path, viewer: ViewerNumber) -> Path:

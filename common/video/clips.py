@@ -16,6 +16,7 @@ from common.config.settings import Settings
 from common.rig.absurd_rig import nearly_one_view, refuse_absurd
 from common.rig.camera import Rig
 from common.rig.rig_file import CalibrationError, fitted, load_rig
+from common.video.camera_file import kept_times, timing_of
 from common.video.clip_facts import Clip, ClipView, Meta
 from common.video.clip_sources import (
     NOTHING,
@@ -121,7 +122,8 @@ def _meta(folder: Path) -> Meta:
         content = path.read_bytes()
         meta = msgspec.json.decode(content, type=Meta)
     except FileNotFoundError:
-        return Meta()
+        left = kept_times(folder)  # by a recording that was killed
+        return msgspec.convert(timing_of(left), Meta) if left else Meta()
     except (OSError, msgspec.DecodeError, RecursionError) as error:
         why = error.strerror if isinstance(error, OSError) else explained(error, Meta, content)
         raise ClipError(f"cannot read {path} ({why}): mend it or take it away") from error

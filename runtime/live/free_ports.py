@@ -57,7 +57,8 @@ def own_session(settings: Settings) -> Settings:
 
 def free_settings(settings: Settings) -> Settings:
     """The same settings with free ports for endpoint and page."""
-    bus, page = free_port(), free_port()
+    bus = free_port()
+    page = next(port for port in iter(free_port, None) if port != bus)
     kind = "tls" if settings.bus.keys else "tcp"
     return msgspec.structs.replace(
         settings,

@@ -13,9 +13,10 @@ from common.config.settings import Settings
 from common.npz_file import Facts
 from common.rig.camera import Rig
 from common.rig.rig_file import CalibrationError, fitted
-from common.video.camera_file import SUFFIX, missing_of, rate_of, write_times
+from common.video.camera_file import SUFFIX, finish_times, kept_times, missing_of, rate_of
 from common.video.clip_facts import Clip, whole_rig
 from common.video.clip_sources import CLIP_CAMERAS
+from common.video.pictures import is_recorded
 from runtime.live.admission import LiveRefused
 from runtime.live.page_desk import SAVED
 from runtime.live.run_facts import facts_of_clip
@@ -23,7 +24,6 @@ from runtime.store.journal import Head as JournalHead
 from runtime.store.journal import Journal, has_journal
 from runtime.store.past_journal import LOG, put_aside
 from runtime.store.recording import torn_recordings
-from viewer.kept_pictures import TIMES, kept_times
 
 PICTURES: Final = "pictures"
 """Name of the folder with what the cameras showed, a clip, where a run keeps that."""
@@ -91,12 +91,15 @@ def refuse_kept_pictures(out: Path) -> None:
 def new_pictures(out: Path, clip: Clip, wanted: bool) -> Path | None:
     """An empty folder for pictures, with the clip's calibration; None where none are wanted.
 
-    Those of a run before are removed.
+    Those of a run before are removed, unless this run plays them.
 
     Raises:
-        LiveRefused: When it cannot be written.
+        LiveRefused: When it cannot be written, or this run plays what is in it.
     """
     folder = out / PICTURES
+    played = (Path(view.source) for view in clip.views if is_recorded(view.source))
+    if any(folder.resolve() in path.resolve().parents for path in played):
+        raise LiveRefused(f"this run plays {folder}, which it would replace: name another --out")
     try:
         if folder.is_dir():
             shutil.rmtree(folder)
@@ -128,9 +131,7 @@ def finish_pictures(folder: Path | None, notes: list[str]) -> Facts:
         notes.append(f"no picture was kept in {folder}")
         return {}
     try:
-        write_times(folder, kept)
-        for path in folder.glob(f"*{TIMES}"):
-            path.unlink()
+        finish_times(folder)
     except OSError as error:
         notes.append(f"the times of the pictures in {folder} could not be written: {error}")
     for name, times_s in kept.items():

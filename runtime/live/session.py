@@ -90,9 +90,9 @@ def live(
             return facts_of(heard, clip, time.monotonic() - began, so_far)
 
         desk.facts = facts
+        folder = new_pictures(out, clip, pictures)
         journal = new_journal(out, clip, settings, heard.notes)
         heard = heard._replace(journal=journal)
-        folder = new_pictures(out, clip, pictures)
         run_of = _Prepared(
             settings, clip, out, log, launcher, desk, screen, record, together, folder
         )

@@ -169,6 +169,8 @@ def _completed(poses: Arrays) -> Arrays:
 def _refuse_other_arrays(path: Path, poses: Arrays) -> None:
     rows = len(poses["frame"]) if np.ndim(poses.get("frame", 0)) == 1 else 0
     cameras = len(np.ravel(poses.get("camera_names", ())))
+    if not cameras:
+        raise PastRunError(f"{path}: camera_names are missing: track it again")
     further = SINGLE_ROWS | EXTREMITY_ROWS | _by_camera(EXTREMITY_CAMERA_ROWS, cameras)
     due = ROWS | _by_camera(CAMERA_ROWS, cameras)
     known = due | {name: row for name, row in further.items() if name in poses}

@@ -10,9 +10,9 @@ from typing import Final
 
 from common.atomic_file import FileRefused
 from common.npz_file import Facts
-from common.video.camera_file import SPARE_BYTES, write_times
+from common.video.camera_file import SPARE_BYTES, finish_times
 from common.video.clip_sources import CLIP_CAMERAS, ClipError
-from common.video.pictures import Source, named
+from common.video.pictures import Source, is_recorded, named
 from tritrack.recording_cameras.camera_take import CameraTake
 from tritrack.recording_cameras.motion_delay import delay_s
 
@@ -57,6 +57,9 @@ def record_clip(
     old = [*folder.glob("cam[1-8].*"), *folder.glob("meta.json")] if folder.is_dir() else []
     if old and not force:
         raise FileRefused(f"{folder} holds a clip: name another --out, or say --force")
+    for played in filter(is_recorded, sources):
+        if Path(played).exists() and any(path.samefile(played) for path in old):
+            raise FileRefused(f"{played} plays as a camera, and would be replaced: another --out")
     folder.mkdir(parents=True, exist_ok=True)
     with ExitStack() as cameras:
         takes = []
@@ -112,7 +115,7 @@ def _finished(takes: Sequence[CameraTake], folder: Path, lasted_s: float, why: s
         raise ClipError(
             f"{named(empty[0].source)} gave {len(empty[0].times_s)} pictures: record longer"
         )
-    write_times(folder, {take.name: take.times_s for take in takes})
+    finish_times(folder)
     later = {take.name: delay_s(takes[0].motion, take.motion) for take in takes[1:]}
     return {
         "folder": str(folder),

@@ -7,6 +7,7 @@ from typing import Final
 
 from animator.start.sections import Recordings, ShownRecording
 from common.config.settings import Settings
+from common.video.camera_file import finish_times, kept_times
 from common.video.clip_sources import CLIP_CAMERAS, ClipError
 from common.video.clips import meta_of
 from runtime.terminal import counted
@@ -24,6 +25,16 @@ def recording_names(runs: Path) -> list[str]:
         if not path.parent.is_symlink()
     ]
     return [name for _, name in sorted(found)]
+
+
+def finish_recording(clip: Path) -> None:
+    """Make a recording of what one that was killed left, where two cameras of it left enough.
+
+    Raises:
+        OSError: When it cannot be written.
+    """
+    if not (clip / "meta.json").is_file() and len(kept_times(clip)) > 1:
+        finish_times(clip)
 
 
 def recorded_videos(runs: Path, name: str) -> list[Path]:

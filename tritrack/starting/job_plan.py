@@ -144,7 +144,7 @@ def planned(wish: Work, files: Sequence[Dropped], known: Known) -> Plan:
     Raises:
         PlanError: When a name, number or calibration is invalid.
     """
-    _refuse_numbers(wish)
+    refuse_numbers(wish)
     refuse_name(wish.name)
     if wish.calibration and wish.calibration not in known.calibrations:
         raise PlanError(f"there is no calibration {wish.calibration!r}: choose one of the list")
@@ -170,7 +170,12 @@ def refuse_name(name: str) -> None:
         )
 
 
-def _refuse_numbers(wish: Work) -> None:
+def refuse_numbers(wish: Work) -> None:
+    """Refuse numbers that its command does not take.
+
+    Raises:
+        PlanError: When there is one.
+    """
     for what, value, (low, high) in (
         ("the person's height, in metres,", wish.stature_m, STATURE_M),
         ("the side of a square, in mm,", wish.square_mm, SQUARE_MM),

@@ -105,9 +105,7 @@ class JobQueue:
         Raises:
             PlanError: When too many wait.
         """
-        waiting = [job for job in self._jobs if job.state == "waiting"]
-        if len(waiting) >= MOST_WAITING:
-            raise PlanError(f"{MOST_WAITING} jobs wait already: let one end, or cancel one")
+        self.refuse_one_more()
         if plan.kind == "page":
             for job in self._jobs:
                 if job.plan.kind == "page" and not job.is_over:
@@ -118,6 +116,15 @@ class JobQueue:
         for job in over[: max(0, len(over) - MOST_KEPT)]:
             self._jobs.remove(job)
         return self._jobs[-1]
+
+    def refuse_one_more(self) -> None:
+        """Refuse a further plan where too many wait.
+
+        Raises:
+            PlanError: When they do.
+        """
+        if sum(job.state == "waiting" for job in self._jobs) >= MOST_WAITING:
+            raise PlanError(f"{MOST_WAITING} jobs wait already: let one end, or cancel one")
 
     def cancel(self, number: int) -> None:
         """End a job, or take it out of the queue."""
@@ -137,8 +144,10 @@ class JobQueue:
 
     @property
     def names(self) -> frozenset[str]:
-        """Of the runs that jobs write or will write."""
-        return frozenset(job.plan.run for job in self._jobs if job.plan.run and not job.is_over)
+        """Of the runs and recordings that jobs write or will write."""
+        going = [job.plan for job in self._jobs if not job.is_over]
+        runs = {plan.run for plan in going if plan.run}
+        return frozenset(runs | {plan.records.name for plan in going if plan.records is not None})
 
     def uses(self, path: Path) -> bool:
         """Whether a job that is not over needs a path or something in it, or writes a run there."""

@@ -91,7 +91,7 @@ def found_runs(runs: Path) -> list[RunFiles]:
             continue
         try:
             told, changed_s = json.loads(summary.read_text()), summary.stat().st_mtime
-        except (OSError, ValueError):
+        except (OSError, ValueError, RecursionError):
             continue
         if isinstance(told, dict):
             found.append(RunFiles(path, changed_s, told))
@@ -170,9 +170,13 @@ def _why_no_retouch(summary: Mapping[str, Any]) -> str:
     if find_spec("viser") is None or find_spec("tomlkit") is None:
         return "needs: pip install 'tritrack[page]'"
     films = made_by(summary)[1]
-    if not films or not Path(films[0]).is_file():
-        return "its video is not there"
-    return ""
+    return "" if films and _is_there(films[0]) else "its video is not there"
+
+
+def _is_there(film: str) -> bool:
+    with suppress(OSError, ValueError):  # a path that this system cannot have
+        return Path(film).is_file()
+    return False
 
 
 def picture_of(run: RunFiles, decoder: Decoder) -> bytes | None:
@@ -211,7 +215,7 @@ def _frame_or_paper(
 ) -> tuple[Image, int]:
     """The frame, else paper on which the body fits; and the width of the working picture."""
     films = made_by(run.summary)[1]
-    if films and Path(films[0]).is_file():
+    if films and _is_there(films[0]):
         try:
             info = decoder.probe(films[0])
             size = (info.width, info.height)

@@ -35,13 +35,14 @@ from common.video.decoding import Decoder
 from runtime.store.run_exports import OWN_NAMES
 from tritrack.recording_cameras.recorded_clips import (
     RECORDED,
+    finish_recording,
     recorded_videos,
     recording_names,
     remove_recording,
 )
 from tritrack.starting.aside import Aside
 from tritrack.starting.calibration_list import remove_calibration
-from tritrack.starting.job_plan import PlanError, kept_calibration
+from tritrack.starting.job_plan import PlanError, kept_calibration, refuse_numbers
 from tritrack.starting.job_queue import Job, JobQueue
 from tritrack.starting.start_files import clean, delete_run, place, remove, served
 from tritrack.starting.start_lists import StartLists
@@ -87,6 +88,8 @@ class StartDesk:
         self._board = self._runs / FOLDER / "board"
         """What the board shows to the cameras."""
         clean(self._runs, self._queue.uses)
+        for clip in (self._runs / RECORDED).glob("*/"):
+            finish_recording(clip)  # this machine went off while it recorded
 
     @property
     def hello(self) -> Hello:
@@ -117,13 +120,13 @@ class StartDesk:
         self._aside.turn()
         self._hear_sounds()
         page.show(shown_tray(self._uploads.files, self._facts, self._late_s))
-        if time.monotonic() >= self._jobs_due_s:
-            self._jobs_due_s = time.monotonic() + JOBS_S
-            try:
+        try:
+            if time.monotonic() >= self._jobs_due_s:
+                self._jobs_due_s = time.monotonic() + JOBS_S
                 self._show_jobs(page)
-            except OSError as error:
-                page.tell(self._unwritten(error))
-        self._lists.turn(page)
+            self._lists.turn(page)
+        except OSError as error:
+            page.tell(self._unwritten(error))
 
     def close(self) -> None:
         """End the jobs, close the cameras, remove what was only dropped."""
@@ -214,7 +217,10 @@ class StartDesk:
         there = There(
             self._runs, self._uploads.files, self._facts, self._lists.sources, self._queue.names
         )
+        self._queue.refuse_one_more()
         if isinstance(wish, Watched):
+            # While what was watched is still there.
+            refuse_numbers(Work("board", square_mm=wish.square_mm))
             there = there._replace(board=self._lists.watch((), self._board))
         plan = plan_of(wish, there)
         if isinstance(wish, Live | Watched | Record):
@@ -254,7 +260,9 @@ class StartDesk:
             self._look_at(self._uploads.put_back(video, f"{name}_{video.name}"))
 
     def _recorded(self, clip: Path) -> None:
-        """Show a clip that was recorded; one that did not come about leaves nothing."""
+        """Show a clip that was recorded, also by a command that was killed; one that did not come
+        about leaves nothing."""
+        finish_recording(clip)
         if clip.name not in recording_names(self._runs):
             remove(clip)
         elif not self._uploads.files:

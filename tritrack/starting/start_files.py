@@ -57,9 +57,7 @@ def clean(runs: Path, is_used: Callable[[Path], bool]) -> None:
         runs: The folder of the runs.
         is_used: Whether a job needs a path.
     """
-    named = {
-        clip_folder(runs, video) for run in found_runs(runs) for video in made_by(run.summary)[1]
-    }
+    named = {clip_name(video) for run in found_runs(runs) for video in made_by(run.summary)[1]}
     for place_of in (CLIPS, SETTINGS):
         for path in (runs / place_of).glob("*"):
             is_of_run = (runs / path.stem).is_dir() or (runs / path.name).is_dir()
@@ -67,11 +65,13 @@ def clean(runs: Path, is_used: Callable[[Path], bool]) -> None:
                 remove(path)
 
 
-def clip_folder(runs: Path, video: str) -> str:
-    """The name of the folder of a run's own video; "": it is not among those."""
-    within = Path(video)
-    clips = runs / CLIPS
-    return within.relative_to(clips).parts[0] if clips in within.parents else ""
+def clip_name(video: str) -> str:
+    """The name of the folder of a run's own video; "": it is not among those.
+
+    By the path's end alone: a folder of runs may be reached by a link, or be moved.
+    """
+    parts = Path(video).parts
+    return parts[parts.index(CLIPS) + 1] if CLIPS in parts[:-1] else ""
 
 
 def delete_run(runs: Path, name: str) -> bool:

@@ -65,7 +65,7 @@ class There(NamedTuple):
     sources: Mapping[str, Source]
     """Of the cameras, by their ids."""
     taken: frozenset[str]
-    """Names of runs that jobs write."""
+    """Names of runs and recordings that jobs write."""
     board: tuple[Path, ...] = ()
     """Videos of the cameras before which the board was held."""
 
@@ -151,7 +151,7 @@ def _plan_of_recording(wish: Record, there: There) -> Plan:
     refuse_name(wish.name)
     folder = there.runs / RECORDED
     taken = {path.name for path in folder.iterdir()} if folder.is_dir() else set()
-    name = free_name(wish.name or time.strftime("clip_%Y-%m-%d_%H%M"), taken)
+    name = free_name(wish.name or time.strftime("clip_%Y-%m-%d_%H%M"), taken | there.taken)
     sources = [there.sources[each] for each in wish.cameras]
     return record_plan(sources, wish.seconds, folder / name)
 

@@ -15,7 +15,9 @@ export class Cameras {
       if (at("record-seconds").reportValidity() && at("record-name").reportValidity()) link.say({ type: "record", cameras: this.chosen, seconds: Number(at("record-seconds").value), name: at("record-name").value });
     });
     at("watch").addEventListener("click", () => link.say({ type: "watch", cameras: this.watching ? [] : this.chosen }));
-    at("watched").addEventListener("click", () => link.say({ type: "watched", square_mm: at("live-square").value === "" ? null : Number(at("live-square").value) }));
+    at("watched").addEventListener("click", () => {
+      if (at("live-square").reportValidity()) link.say({ type: "watched", square_mm: at("live-square").value === "" ? null : Number(at("live-square").value) });
+    });
     setInterval(() => this.renew(), EVERY_MS);
   }
 
