@@ -153,7 +153,6 @@ LEFT_ALONE = {
     "it has a rig": {"rig": TURNED},
     "one view": {"views": (FIRST,)},
     "a camera": {"views": (FIRST, msgspec.structs.replace(SECOND, frames=0))},
-    "two sizes": {"views": (FIRST, msgspec.structs.replace(SECOND, size=(120, 160)))},
 }
 
 
@@ -163,6 +162,30 @@ def test_a_clip_is_left_as_it_is_where_the_person_cannot_tell(
 ) -> None:
     looks, clip = Looks(monkeypatch), first_two(**changed)
     assert by(clip) == Looked(clip)
+    assert looks.asked == []
+
+
+def test_cameras_of_nearly_one_size_are_calibrated_each_for_its_own(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Two of four films of one laboratory are 1080 pixels wide, two 1088."""
+    looks = Looks(monkeypatch)
+    looked = by(first_two(views=(FIRST, msgspec.structs.replace(SECOND, size=(162, 120)))))
+    assert len(looks.asked) == 1
+    assert looked.clip.rig is not None
+    first, second = (np.array(camera.K) for camera in looked.clip.rig.cameras)
+    assert np.array_equal(first, TURNED.cameras[0].K)
+    assert np.allclose(second[0], np.array(TURNED.cameras[1].K)[0] * (162 / 160))
+    assert np.array_equal(second[1], TURNED.cameras[1].K[1])
+
+
+def test_pictures_of_two_shapes_are_not_calibrated_and_it_is_said(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    looks = Looks(monkeypatch)
+    clip = first_two(views=(FIRST, msgspec.structs.replace(SECOND, size=(120, 160))))
+    said = "not calibrated by the person: the views' pictures differ in shape"
+    assert by(clip) == Looked(clip, None, said)
     assert looks.asked == []
 
 
@@ -248,6 +271,17 @@ def test_each_view_is_looked_at_with_its_own_state(monkeypatch: pytest.MonkeyPat
     assert second.times_s.tolist() == [0.1, 0.2]
     assert size_px == (160, 120)
     assert second.joints_px[0].tolist() == [list(place) for place in LANDMARKS.joints_px]
+
+
+def test_landmarks_are_in_pixels_of_the_first_views_pictures(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    passed = Pass(monkeypatch, 3)
+    clip = first_two(views=(FIRST, msgspec.structs.replace(SECOND, size=(320, 240))))
+    monkeypatch.setattr(rig_from_person, "openings", lambda *_: passed.told)
+    (_, second), size_px = sightings_of(clip, Settings(), METHOD, {}, {})
+    assert size_px == (160, 120)
+    assert np.array_equal(second.joints_px[0], np.array(LANDMARKS.joints_px) / 2)
 
 
 def test_a_clip_is_looked_at_until_a_camera_is_moved_or_enough_is_seen(

@@ -129,6 +129,14 @@ def test_clips_of_other_cameras_are_refused_by_their_names(monkeypatch: pytest.M
         calibrated_by_clips(clips.paths, Given())
 
 
+def test_cameras_of_nearly_one_size_are_of_one_rig(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The calibration is for the first camera's pictures."""
+    wide = msgspec.structs.replace(SECOND, source_size=(322, 240))
+    clips = Clips(monkeypatch, msgspec.structs.replace(TWO, views=(FIRST, wide)))
+    found = calibrated_by_clips(clips.paths, Given())
+    assert (found.rig.width, found.rig.height) == (320, 240)
+
+
 def test_clips_of_several_sizes_are_refused_with_their_sizes(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

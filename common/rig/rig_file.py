@@ -13,6 +13,9 @@ from common.rig.camera import Rig, as_matrix
 DISTORTIONS: Final = (0, 4, 5, 8, 12, 14)
 """Possible lengths of OpenCV's distortion models."""
 
+SAME_SHAPE: Final = 0.02
+"""Largest difference of aspect ratios at which two sizes show the same picture."""
+
 
 class CalibrationError(ValueError):
     """An invalid calibration: the text names the file, the fault and the cure."""
@@ -111,6 +114,11 @@ def check_rig(rig: Rig, where: str) -> None:
             )
 
 
+def is_of_shape(one: tuple[int, int], other: tuple[int, int]) -> bool:
+    """Whether two picture sizes have one shape, but for rounding to pixels and a cut edge."""
+    return abs(one[0] * other[1] / (other[0] * one[1]) - 1.0) <= SAME_SHAPE
+
+
 def fitted(rig: Rig, size: tuple[int, int], where: str) -> Rig:
     """The rig for pictures of another size of the same shape: K scaled, the rest kept.
 
@@ -119,7 +127,7 @@ def fitted(rig: Rig, size: tuple[int, int], where: str) -> Rig:
     """
     width, height = size
     scale_x, scale_y = width / rig.width, height / rig.height
-    if abs(scale_x / scale_y - 1.0) > 0.02:
+    if not is_of_shape(size, (rig.width, rig.height)):
         raise CalibrationError(
             f"{where} is for {rig.width}x{rig.height} pictures, the clip has {width}x{height}: "
             "another camera or a cropped picture; calibrate for this one"

@@ -4,20 +4,22 @@ from collections.abc import Mapping
 from typing import Final, NamedTuple
 
 import msgspec
+import numpy as np
 
 from calibration.person.rig_quality import PersonCalibration
 from calibration.tracks.camera_clocks import Clocks, clocks_of
-from calibration.tracks.joint_tracks import Sightings, track_of
+from calibration.tracks.joint_tracks import JointTrack, Sightings, track_of
 from calibration.tracks.lateness import LEAST_LATE, Clock
 from common.bus.messages import View, ViewerNumber
 from common.config.settings import Settings
 from common.method import Method
 from common.npz_file import Facts
 from common.rig.absurd_rig import nearly_one_view
-from common.rig.rig_file import CalibrationError
-from common.video.clip_facts import Clip, set_back
+from common.rig.camera import Rig
+from common.rig.rig_file import CalibrationError, fitted, is_of_shape
+from common.video.clip_facts import Clip, ClipView, set_back
 from common.video.clip_sources import offsets_of
-from common.video.pictures import Reader
+from common.video.pictures import Reader, Size
 from runtime.offline.frame_pairs import instants, openings
 from viewer import track
 from viewer.landmarks.landmark_sources import Sources
@@ -26,6 +28,7 @@ ON_TIME: Final = Clock(0.0)
 """The clock of view 2 where the user gives its delay: it is on time after that."""
 MOST_FRAMES: Final = 3_000
 """Number of a clip's first frames that are used."""
+NOT_OF_ONE_SHAPE: Final = "not calibrated by the person: the views' pictures differ in shape"
 
 
 class Looked(NamedTuple):
@@ -47,7 +50,8 @@ def sightings_of(
     readers: Mapping[ViewerNumber, Reader],
     sources: Sources,
 ) -> Sightings:
-    """All views of the person in a clip without a rig, until a camera is moved.
+    """All views of the person in a clip without a rig, until a camera is moved, in pixels of the
+    first view's pictures.
 
     Raises:
         DecoderDied: When a video crashed the decoder.
@@ -69,8 +73,22 @@ def sightings_of(
         is_moved = any(own[-1].shift is not None for own in reports.values() if own)
         if n + 1 == MOST_FRAMES or is_moved:
             break
-    tracks = tuple(track_of(reports[view.number]) for view in clip.views)
-    return Sightings(tracks, clip.views[0].size)
+    size = clip.views[0].size
+    tracks = tuple(_in_size(track_of(reports[view.number]), view, size) for view in clip.views)
+    return Sightings(tracks, size)
+
+
+def _in_size(track: JointTrack, view: ClipView, size: Size) -> JointTrack:
+    """A view's landmarks in pixels of pictures of another size."""
+    return track._replace(joints_px=track.joints_px * (np.array(size) / view.size))
+
+
+def in_own_sizes(rig: Rig, views: tuple[ClipView, ...]) -> Rig:
+    """The rig with each camera for the size of its own view's pictures."""
+    cameras = tuple(
+        fitted(rig, view.size, view.name).cameras[place] for place, view in enumerate(views)
+    )
+    return msgspec.structs.replace(rig, cameras=cameras)
 
 
 def by_person(
@@ -83,14 +101,15 @@ def by_person(
     """A recorded clip of several views, with a rig from its person where it has none.
 
     It is unchanged where it has a rig, where the method uses no landmarks, where too little of a
-    person is seen, and where the views' pictures differ in size.
+    person is seen, and where the views' pictures differ in shape.
     """
     of_files = all(view.frames for view in clip.views)
-    of_one_size = len({view.size for view in clip.views}) == 1
-    if clip.rig is not None or len(clip.views) < 2 or not (of_files and of_one_size):
+    if clip.rig is not None or len(clip.views) < 2 or not of_files:
         return Looked(clip)
     if not (method.landmarks and method.proposals):
         return Looked(clip)
+    if not all(is_of_shape(view.size, clip.views[0].size) for view in clip.views):
+        return Looked(clip, None, NOT_OF_ONE_SHAPE)
     from calibration.person.many_calibration import calibrated_by_all  # as long as all else
 
     seen = sightings_of(clip, settings, method, readers, sources)
@@ -101,7 +120,8 @@ def by_person(
         told = f"not calibrated by the person: {error}"
         late_s = tuple(clock.late_s for clock in clocks)
         return Looked(on_time(clip, clocks, late_s), None, told, clocks)
-    clip = on_time(msgspec.structs.replace(clip, rig=found.rig), clocks, found.late_s)
+    rig = in_own_sizes(found.rig, clip.views)
+    clip = on_time(msgspec.structs.replace(clip, rig=rig), clocks, found.late_s)
     return Looked(clip, found, nearly_one_view(found.rig), clocks)
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from contextlib import ExitStack
+from itertools import chain
 from pathlib import Path
 from typing import NamedTuple
 
@@ -12,12 +13,12 @@ from common.config import config_file
 from common.config.part_settings import BodySettings
 from common.method import METHODS
 from common.rig.camera import Rig
-from common.rig.rig_file import CalibrationError, fitted
+from common.rig.rig_file import CalibrationError, fitted, is_of_shape
 from common.video.clip_facts import Clip
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
 from common.video.frame_cache import FrameCache
-from common.video.pictures import Reader
+from common.video.pictures import Reader, Size
 from runtime.offline.rig_from_person import believed_clocks, sightings_of
 from runtime.sound_clocks import by_ear, heard_words
 from viewer.landmarks.landmark_sources import outside_sources
@@ -51,7 +52,7 @@ def calibrated_by_clips(paths: Sequence[Path], given: Given) -> FoundByClips:
         ClipError, SettingsError, DecoderDied, Undecodable: When a clip cannot be used.
     """
     method = METHODS["default"]
-    films, clocks, sizes = [], [], set()
+    films, clocks, sizes = [], [], list[tuple[Size, ...]]()
     names, heard = list[str](), list[str]()
     with ExitStack() as doors:
         decoders: list[Reader] = []
@@ -61,7 +62,7 @@ def calibrated_by_clips(paths: Sequence[Path], given: Given) -> FoundByClips:
             heard += heard_words(str(path), late_s)
             names = names or [view.name for view in clip.views]
             _refuse_another_rig(path, clip, names)
-            sizes |= {view.source_size for view in clip.views}
+            sizes.append(tuple(view.source_size for view in clip.views))
             while len(decoders) < len(names):
                 decoders.append(doors.enter_context(Decoder()))
             readers = {
@@ -70,11 +71,12 @@ def calibrated_by_clips(paths: Sequence[Path], given: Given) -> FoundByClips:
             with outside_sources(settings, clip.views) as sources:
                 films.append(sightings_of(clip, settings, method, readers, sources))
             clocks.append(believed_clocks(clip, settings, films[-1]))
-    if len(sizes) > 1:
-        told = ", ".join(f"{width}x{height}" for width, height in sorted(sizes))
+    size = sizes[0][0]
+    if set(sizes) != {sizes[0]} or not all(is_of_shape(each, size) for each in sizes[0]):
+        told = ", ".join(f"{width}x{height}" for width, height in sorted(set(chain(*sizes))))
         raise CalibrationError(f"pictures of several sizes ({told}) are not of one rig")
     found = calibrated_by_all(tuple(films), given.stature_m, given.fov_deg, tuple(clocks))
-    rig = fitted(found.rig, sizes.pop(), "the calibration")
+    rig = fitted(found.rig, size, "the calibration")
     return FoundByClips(rig, found.quality, found.clocks, tuple(heard))
 
 
