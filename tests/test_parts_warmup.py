@@ -23,3 +23,12 @@ def test_what_is_run_first_is_a_program_of_ours_which_compiles_in_silence(
     parts_warmup.compile_all(words)
     assert called == ["all"]
     assert capfd.readouterr() == ("", "")
+
+
+def test_the_parts_are_warmed_up_in_silence(
+    monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(parts_warmup, "warm_up", lambda: print("a library speaks"))
+    words: Any = None
+    parts_warmup.compile_parts(words)
+    assert capfd.readouterr() == ("", "")

@@ -8,8 +8,11 @@ from common.cache_folder import mark_of_all
 
 
 def compile_all() -> None:
-    """Track a synthetic clip with both cameras and with one, and execute the further code of live
-    parts and videos, so that no later run needs to compile.
+    """Track a synthetic clip with both cameras and with one, and execute the code of live parts, so
+    that no later run needs to compile.
+
+    Each in a process of its own, on two cores. They begin with different code: who needs a function
+    that the other has compiled loads it.
 
     A marker in the folder of compiled code says that this was done: the next call takes no longer
     than importing numba.
@@ -24,16 +27,26 @@ def compile_all() -> None:
 
 
 def _run_all() -> None:
+    from common.platform.platform import Job
+    from common.platform.platforms import platform
+    from runtime.warming.parts_warmup import compile_parts, warm_up
+
+    parts = platform().start(Job("compiling", compile_parts, ())).worker
+    _track()
+    parts.join()
+    if parts.exitcode:
+        warm_up()  # what it died of is said here
+
+
+def _track() -> None:
     from common.config.settings import Settings
     from runtime.offline.lockstep import Decoders, track_clip
-    from runtime.warming.parts_warmup import warm_up
     from tritrack.demo import made_clip
 
     with tempfile.TemporaryDirectory(prefix="tritrack-first-") as folder, Decoders() as decoders:
         settings = Settings(clip=str(made_clip(Path(folder))))
         track_clip(settings, decoders)
         track_clip(settings, decoders, (1,))
-    warm_up()
 
 
 if __name__ == "__main__":

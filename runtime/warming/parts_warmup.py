@@ -29,6 +29,12 @@ def compile_all(_words: Connection) -> None:
         import_module(FIRST_RUN).compile_all()
 
 
+def compile_parts(_words: Connection) -> None:
+    """Compile what the parts execute before their first frames, silently: a worker's job."""
+    with redirect_stdout(io.StringIO()):
+        warm_up()
+
+
 def warm_up() -> None:
     """Execute all that a part executes in the default mode before its first frame.
 
