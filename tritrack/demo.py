@@ -41,14 +41,16 @@ class DemoFailed(RuntimeError):
     """The demo ran with a wrong result; the text names it."""
 
 
-def made_clip(folder: Path, cameras: int = 2) -> Path:
+def made_clip(
+    folder: Path, cameras: int = 2, size: tuple[int, int] = SIZE, motion_s: float = MOTION_S
+) -> Path:
     """The demo's clip with its calibration, written into a folder."""
-    rig, someone = rig_around(SIZE, cameras, PERFORMER_SEED), person(PERFORMER_SEED)
+    rig, someone = rig_around(size, cameras, PERFORMER_SEED), person(PERFORMER_SEED)
     clip = folder / clip_name(someone, POSTURE, TAKE)
     write_clip(
         clip,
         someone,
-        performance(someone, POSTURE, TAKE, motion_s=MOTION_S),
+        performance(someone, POSTURE, TAKE, motion_s=motion_s),
         Filming(rig, room_seed=PERFORMER_SEED, seed=PERFORMER_SEED),
         TAKE,
     )

@@ -3,13 +3,19 @@
 import tempfile
 import time
 from pathlib import Path
+from typing import Final
 
 from common.cache_folder import mark_of_all
 
+SIZE: Final = (160, 120)
+"""Size of the synthetic pictures; the compiled code is valid for any."""
+MOTION_S: Final = 1.0
+"""Length of what follows the opening posture: as long as any longer clip for what is compiled."""
+
 
 def compile_all() -> None:
-    """Track a synthetic clip with both cameras and with one, and execute the code of live parts, so
-    that no later run needs to compile.
+    """Track a short synthetic clip with both cameras and with one, and execute the code of live
+    parts, so that no later run needs to compile.
 
     Each in a process of its own, on two cores. They begin with different code: who needs a function
     that the other has compiled loads it.
@@ -44,7 +50,7 @@ def _track() -> None:
     from tritrack.demo import made_clip
 
     with tempfile.TemporaryDirectory(prefix="tritrack-first-") as folder, Decoders() as decoders:
-        settings = Settings(clip=str(made_clip(Path(folder))))
+        settings = Settings(clip=str(made_clip(Path(folder), 2, SIZE, MOTION_S)))
         track_clip(settings, decoders)
         track_clip(settings, decoders, (1,))
 
