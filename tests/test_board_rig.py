@@ -84,8 +84,7 @@ def test_a_rig_is_found_within_ten_millimetres_and_a_fifth_of_a_degree(seed: int
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("size", "square_m"), [((640, 480), 0.1), ((320, 240), 0.2)])
-@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize(("seed", "size", "square_m"), [(1, (640, 480), 0.1), (2, (320, 240), 0.2)])
 def test_a_rig_is_found_from_pictures_as_well(
     seed: int, size: tuple[int, int], square_m: float
 ) -> None:

@@ -46,19 +46,19 @@ OTHERS = 50_000
 
 @lru_cache(maxsize=1)
 def shown() -> list[Composite]:
-    """Six hundred pictures of people whom the network never saw."""
+    """Three hundred pictures of people whom the network never saw."""
     rng = np.random.default_rng(5)
     people: list[PictureExample] = [
-        example for seed in range(OTHERS, OTHERS + 40) for example in picture_examples(seed)
+        example for seed in range(OTHERS, OTHERS + 20) for example in picture_examples(seed)
     ]
-    backdrops = [backdrop(seed) for seed in range(OTHERS, OTHERS + 60)]
+    backdrops = [backdrop(seed) for seed in range(OTHERS, OTHERS + 20)]
 
     def anybody() -> PictureExample:
         return people[int(rng.integers(len(people)))]
 
     return [
-        composite(one, anybody, lambda: backdrops[int(rng.integers(60))], rng)
-        for one in people[:600]
+        composite(one, anybody, lambda: backdrops[int(rng.integers(20))], rng)
+        for one in people[:300]
     ]
 
 

@@ -1,7 +1,7 @@
 """Rigs of three cameras found by the person before them, held against rigs that are known."""
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
@@ -28,14 +28,45 @@ def off(found: Rig, true: Rig, number: int) -> tuple[float, float]:
     return math.degrees(math.acos(min(1.0, cosine))), float(np.linalg.norm(places[0] - places[1]))
 
 
+LATE_S = (-0.2, 0.2)
+"""Of the clocks of cameras 2 and 3, before the first person."""
+
+
+class Found(NamedTuple):
+    """A rig of three cameras, and what its person gave of it."""
+
+    true: Rig
+    joint: PersonCalibration
+    pairs: dict[tuple[int, int], Any]
+    """What the joint adjustment began with."""
+
+
+def found_by(seed: int, posture: str, late_s: tuple[float, ...] = ()) -> Found:
+    begun, by_pairs = list[Any](), many_calibration._by_pairs
+
+    def noted(*given: Any) -> Any:
+        begun.append(by_pairs(*given))
+        return begun[-1]
+
+    rig, stature_m = around(3, seed), person(seed).measures["stature_m"]
+    seen = shown(rig, seed, posture, late_s)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(many_calibration, "_by_pairs", noted)
+        joint = calibrated_by_all((seen,), stature_m, None, (clocks_of(seen),))
+    return Found(rig, joint, begun[-1])
+
+
+@pytest.fixture(scope="module")
+def by_first() -> Found:
+    return found_by(12, "free", (0.0, *LATE_S))
+
+
 @pytest.mark.slow
-def test_three_cameras_are_found_with_their_clocks_by_one_person() -> None:
-    rig, stature_m = around(3, 12), person(12).measures["stature_m"]
-    seen = shown(rig, 12, "free", (0.0, -0.2, 0.2))
-    found = calibrated_by_all((seen,), stature_m, None, (clocks_of(seen),))
+def test_three_cameras_are_found_with_their_clocks_by_one_person(by_first: Found) -> None:
+    rig, found, _ = by_first
     check_rig(found.rig, "found")
     assert [camera.name for camera in found.rig.cameras] == ["cam1", "cam2", "cam3"]
-    assert found.late_s == pytest.approx((-0.2, 0.2), abs=0.5 / 15)
+    assert found.late_s == pytest.approx(LATE_S, abs=0.5 / 15)
     assert len(found.clocks) == len(found.quality.late_error_frames) == 2
     for number in (1, 2):
         turn_deg, place_m = off(found.rig, rig, number)
@@ -104,24 +135,12 @@ def test_of_many_cameras_each_is_paired_with_its_neighbours() -> None:
 
 
 @pytest.mark.slow
-def test_the_joint_adjustment_is_better_than_the_pairs_it_begins_with(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_the_joint_adjustment_is_better_than_the_pairs_it_begins_with(by_first: Found) -> None:
     """Of two people before three cameras, each camera's turn against camera 1, on average."""
-    pairs_deg, joint_deg, begun = [], [], list[Any]()
-    by_pairs = many_calibration._by_pairs
-
-    def noted(*given: Any) -> Any:
-        begun.append(by_pairs(*given))
-        return begun[-1]
-
-    monkeypatch.setattr(many_calibration, "_by_pairs", noted)
-    for seed, posture in ((12, "free"), (13, "walk_slow_bigswing")):
-        rig, stature_m = around(3, seed), person(seed).measures["stature_m"]
-        seen = shown(rig, seed, posture)
-        joint = calibrated_by_all((seen,), stature_m, None, (clocks_of(seen),)).rig
-        joint_deg += [off(joint, rig, n)[0] for n in (1, 2)]
+    pairs_deg, joint_deg = [], []
+    for rig, joint, pairs in (by_first, found_by(13, "walk_slow_bigswing")):
         for n in (1, 2):
+            joint_deg.append(off(joint.rig, rig, n)[0])
             two = Rig(rig.width, rig.height, (rig.cameras[0], rig.cameras[n]))
-            pairs_deg.append(off(begun[-1][0, n].rig, two, 1)[0])
+            pairs_deg.append(off(pairs[0, n].rig, two, 1)[0])
     assert np.mean(joint_deg) < np.mean(pairs_deg)
