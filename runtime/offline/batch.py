@@ -29,6 +29,7 @@ from runtime.terminal import Tell, bar, by_share, complain, say, warn
 from runtime.unfinished.resuming import Wanted, done_before, resumable
 from runtime.unfinished.unfinished_run import CannotResume
 from runtime.unfinished.work import Course, Kept
+from runtime.warming.first_compilation import compile_on_a_new_machine
 
 KEPT_AS_IT_IS: Final = (CannotResume, OtherRun)
 """An error that keeps one clip's run folder from being written."""
@@ -114,6 +115,7 @@ def _tracked(
     with resumable(wanted, console) as (work, made_of):
         heard = work.messages("heard") if given.record else None
         course, watch = Course(tell, work), None if heard is None else _recorder(heard)
+        compile_on_a_new_machine()
         tracked = track_clip(settings, decoders, given.views, watch=watch, course=course)
         for warning in tracked.facts["warnings"]:
             warn(console, f"{folder.name}: {warning}")

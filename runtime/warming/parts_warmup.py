@@ -2,7 +2,6 @@
 
 import io
 from contextlib import redirect_stdout, suppress
-from importlib import import_module
 from multiprocessing.connection import Connection
 from typing import Final
 
@@ -18,15 +17,8 @@ from viewer import track
 from viewer.background.background import learn
 from viewer.viewer_warmup import warm_up as warm_viewer
 
-FIRST_RUN: Final = "tritrack.first_run"
 SIZE: Final = (160, 120)
 """Size of the synthetic pictures; the compiled code is valid for any."""
-
-
-def compile_all(_words: Connection) -> None:
-    """Compile all that commands run by default, silently: a worker's job."""
-    with redirect_stdout(io.StringIO()):
-        import_module(FIRST_RUN).compile_all()
 
 
 def compile_parts(_words: Connection) -> None:
