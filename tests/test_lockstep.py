@@ -16,6 +16,7 @@ from rich.console import Console
 from spoiling import Film, copied, cut_off, edit_json, refilmed
 from staging import PERIOD_S, RIG
 
+from calibration.gate.odd_camera import OddCamera
 from calibration.tracks.lateness import Clock
 from common.bus.messages import Body
 from common.config.part_settings import SettingsError
@@ -27,6 +28,7 @@ from common.video.pictures import Ending
 from integrator import diagnostics, merge_state
 from integrator.people import recognition
 from lab.accuracy.accuracy import compare
+from runtime.odd_view import turned_clip
 from runtime.offline import lockstep
 from runtime.offline.batch import Asked, track_all
 from runtime.offline.lockstep import Decoders, Tracked, track_clip
@@ -314,13 +316,53 @@ def test_what_is_told_of_the_clock_is_of_the_clip_as_it_was_followed(
 def test_a_run_that_was_being_tracked_again_goes_on_with_that_clock() -> None:
     """It was left with 0.5 s set back, of which the files tell 0.125."""
     looked = Looked(PAIR)
-    left: Any = SimpleNamespace(late_s=(0.5,))
+    left: Any = SimpleNamespace(late_s=(0.5,), odd_camera=None)
     again = lockstep._as_left(looked, Course(work=Left(left)))
     assert [view.late_s for view in again.clip.views] == [0.0, 0.5]
     assert again.clocks == (Clock(0.375),)
     assert lockstep._as_left(looked, Course(work=Left(None))) == looked
-    same: Any = SimpleNamespace(late_s=(0.125,))
+    same: Any = SimpleNamespace(late_s=(0.125,), odd_camera=None)
     assert lockstep._as_left(looked, Course(work=Left(same))) == looked
+
+
+ODD = OddCamera(1, (0.0, 0.03, 0.0), 0.06, 0.01)
+
+
+def test_a_run_that_was_being_tracked_again_goes_on_with_that_rig() -> None:
+    looked = Looked(msgspec.structs.replace(PAIR, rig=RIG))
+    left: Any = SimpleNamespace(late_s=(0.125,), odd_camera=ODD)
+    again = lockstep._as_left(looked, Course(work=Left(left)))
+    assert (again.clip, again.odd) == (turned_clip(looked.clip, ODD), ODD)
+    assert again.clip.rig != RIG
+
+
+@pytest.mark.parametrize(
+    ("trusted", "found", "times"),
+    [(False, None, 2), (True, None, 1), (False, "by the person", 1)],
+    ids=["is odd", "is trusted", "the person told the rig"],
+)
+def test_a_clip_is_followed_again_where_one_camera_contradicts_all_others(
+    monkeypatch: pytest.MonkeyPatch, trusted: bool, found: Any, times: int
+) -> None:
+    """Once: by the rig in which that camera is turned back."""
+    followed: list[Any] = []
+    calibrated = msgspec.structs.replace(PAIR, rig=RIG)
+
+    def follow(looked: Looked, *_: object) -> Any:
+        followed.append(looked.odd)
+        return lockstep._Followed(ready_made(), performed_so(), Witness())
+
+    monkeypatch.setattr(lockstep, "open_clip", lambda *_: calibrated)
+    monkeypatch.setattr(lockstep, "outside_sources", lambda *_: nullcontext({}))
+    monkeypatch.setattr(lockstep, "by_person", lambda *_: Looked(calibrated, found))
+    monkeypatch.setattr(lockstep, "_followed", follow)
+    monkeypatch.setattr(lockstep, "clocks_seen", lambda *_: (Clock(0.0),))
+    monkeypatch.setattr(lockstep, "odd_camera_of", lambda *_: ODD)
+    monkeypatch.setattr(lockstep, "_told", lambda looked, *_: looked)
+    decoders: Any = SimpleNamespace(of={1: None, 2: None})
+    told: Any = track_clip(Settings(trust_calibration=trusted), decoders)
+    assert followed == [None, ODD][:times]
+    assert told.odd == followed[-1]
 
 
 class Left(InMemory):

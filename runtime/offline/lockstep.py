@@ -34,6 +34,7 @@ from integrator.measuring import opening_posture
 from integrator.merge_state import Start
 from integrator.people import recognition
 from runtime.moved_facts import moved_facts
+from runtime.odd_view import odd_camera_facts, odd_camera_of, odd_camera_warnings
 from runtime.offline.frame_pairs import openings
 from runtime.offline.opening_clip import body_of
 from runtime.offline.performance import (
@@ -53,7 +54,12 @@ from runtime.offline.rig_check import (
     late_by,
     trust_facts,
 )
-from runtime.offline.rig_from_person import Looked, by_person, calibration_facts
+from runtime.offline.rig_from_person import (
+    Looked,
+    by_person,
+    calibration_facts,
+    turned_back,
+)
 from runtime.offline.video_tracking import Heard, VideoInput, follow_clip, unseen
 from runtime.sound_clocks import by_ear
 from runtime.steps.method_cameras import (
@@ -156,20 +162,31 @@ def track_clip(
         refuse_everyone_unmeasured(looked.clip, settings)
         followed = _followed(looked, job, began)
         clocks = clocks_seen(looked.clip, followed.witness)
-        late_s = late_by(looked.clip, clocks, offsets_of(settings))
-        if not looked.clocks and any(late_s):
-            looked = looked._replace(clip=set_back(looked.clip, late_s), clocks=clocks)
+        corrected = _corrected(looked, job, followed, clocks)
+        if corrected is not looked:
             _begin_anew(job)
-            followed = _followed(looked, job, began)
-            clocks = clocks_seen(looked.clip, followed.witness)
-        return _told(looked, job, followed, clocks)
+            followed = _followed(corrected, job, began)
+            clocks = clocks_seen(corrected.clip, followed.witness)
+        return _told(corrected, job, followed, clocks)
+
+
+def _corrected(looked: Looked, job: _Job, followed: _Followed, clocks: Clocks) -> Looked:
+    """With late views set back, and a camera turned back that contradicts all others."""
+    late_s = late_by(looked.clip, clocks, offsets_of(job.settings))
+    if looked.found is None and looked.odd is None and not job.settings.trust_calibration:
+        everyone = followed.witness.sightings(looked.clip)
+        looked = turned_back(looked, odd_camera_of(looked.clip, everyone, clocks))
+    if looked.clocks or not any(late_s):
+        return looked
+    return looked._replace(clip=set_back(looked.clip, late_s), clocks=clocks)
 
 
 def _as_left(looked: Looked, course: Course) -> Looked:
-    """With the clock of an interrupted run that was being tracked again."""
+    """With the clock and the rig of an interrupted run that was being tracked again."""
     left = course.work.resumed(STAGE, LockstepState)
     if left is None:
         return looked
+    looked = turned_back(looked, left.odd_camera)
     views = zip(looked.clip.views[1:], left.late_s, strict=True)
     late_s = [late - view.late_s for view, late in views]
     if not any(late_s):
@@ -202,9 +219,10 @@ def _told(looked: Looked, job: _Job, followed: _Followed, clocks: Clocks) -> Tra
         different_people=any(done.integrator.room.same.left_out),
     )
     facts = _facts(ready, done, job.sources) | calibration_facts(looked) | trust
+    facts |= odd_camera_facts(clip, looked.odd)
     given = offsets_of(settings)
     facts |= moved_facts(done.bodies) | clock_facts(clip, looked.clocks or clocks, given, job.heard)
-    facts["warnings"] += doubts(facts)
+    facts["warnings"] += [*odd_camera_warnings(facts), *doubts(facts)]
     return Tracked(clip, doubted(done.bodies, clip, clocks, given), facts)
 
 
@@ -247,9 +265,8 @@ def _prepared(
     source: ScaleSource | None = "person" if looked.found else None
     start = Start(alone, source, opening, frame_times(clip), uprights=uprights_of(clip))
     integrator = merge_state.init(rig, period_s, settings, method, start)
-    return Prepared(
-        clip, frame_caches, viewers, recognition.State(integrator), odd, time.perf_counter() - began
-    )
+    state, seconds = recognition.State(integrator), time.perf_counter() - began
+    return Prepared(clip, frame_caches, viewers, state, odd, seconds, looked.odd)
 
 
 def _facts(ready: Prepared, done: Performance, sources: Sources) -> Facts:

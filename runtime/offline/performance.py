@@ -9,6 +9,7 @@ from typing import Final, NamedTuple
 
 import msgspec
 
+from calibration.gate.odd_camera import OddCamera
 from common.bus.instant import instant_of
 from common.bus.messages import Body, Guide, View, ViewerNumber
 from common.video.clip_facts import Clip
@@ -55,6 +56,8 @@ class Prepared(NamedTuple):
     """Warnings about its backgrounds."""
     seconds: float
     """Seconds of preparing them."""
+    odd_camera: OddCamera | None = None
+    """The camera that the clip's rig has turned back."""
 
 
 class LockstepState(NamedTuple):
@@ -72,6 +75,8 @@ class LockstepState(NamedTuple):
     """Seconds of each stage."""
     late_s: tuple[float, ...] = ()
     """Time by which the times of each view after the first are set back."""
+    odd_camera: OddCamera | None = None
+    """The camera that the rig has turned back."""
 
 
 class Performance(NamedTuple):
@@ -144,6 +149,7 @@ def _begun(ready: Prepared, calibration: LiveCalibration, witness: Witness) -> L
         starts={},
         spent={"viewers": 0.0, "integrator": 0.0, "following": 0.0},
         late_s=tuple(view.late_s for view in ready.clip.views[1:]),
+        odd_camera=ready.odd_camera,
     )
 
 

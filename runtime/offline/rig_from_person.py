@@ -6,6 +6,7 @@ from typing import Final, NamedTuple
 import msgspec
 import numpy as np
 
+from calibration.gate.odd_camera import OddCamera
 from calibration.person.rig_quality import PersonCalibration
 from calibration.tracks.camera_clocks import Clocks, clocks_of
 from calibration.tracks.joint_tracks import JointTrack, Sightings, track_of
@@ -20,6 +21,7 @@ from common.rig.rig_file import CalibrationError, fitted, is_of_shape
 from common.video.clip_facts import Clip, ClipView, set_back
 from common.video.clip_sources import offsets_of
 from common.video.pictures import Reader, Size
+from runtime.odd_view import turned_clip
 from runtime.offline.frame_pairs import instants, openings
 from viewer import track
 from viewer.landmarks.landmark_sources import Sources
@@ -41,6 +43,8 @@ class Looked(NamedTuple):
     clocks: Clocks = ()
     """Clocks of the views after the first, by their own times; none where they were not
     estimated."""
+    odd: OddCamera | None = None
+    """The camera that the clip's rig has turned back."""
 
 
 def sightings_of(
@@ -147,6 +151,13 @@ def on_time(clip: Clip, clocks: Clocks, late_s: tuple[float, ...]) -> Clip:
         for view, clock, late in zip(clip.views[1:], clocks, late_s, strict=True)
     ]
     return set_back(clip, by_s) if any(by_s) else clip
+
+
+def turned_back(looked: Looked, odd: OddCamera | None) -> Looked:
+    """With a camera of its rig turned back, where one is odd."""
+    if odd is None:
+        return looked
+    return looked._replace(clip=turned_clip(looked.clip, odd), odd=odd)
 
 
 def calibration_facts(looked: Looked) -> Facts:
