@@ -87,12 +87,18 @@ class Tracker:
         self.watched: list[bool] = []
         monkeypatch.setattr(batch, "track_clip", self)
         monkeypatch.setattr(batch, "measured_before", lambda _: MEASURED)
+        self.compiled = 0
+        monkeypatch.setattr(batch, "compile_on_a_new_machine", self.compile)
+
+    def compile(self) -> None:
+        self.compiled += 1
 
     def __call__(
         self, settings: Settings, decoders: Decoders, views: Any, *, watch: Any, course: Course
     ) -> Tracked:
         name = Path(settings.clip).name
         self.asked.append((name, settings, views))
+        assert self.compiled == len(self.asked)
         self.watched.append(watch is not None)
         if name in self.fails:
             raise self.fails[name]
