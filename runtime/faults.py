@@ -21,6 +21,8 @@ MENDABLE: Final = 2
 UNFOLLOWED: Final = 3
 """Exit code of a run whose results are written but hardly believable."""
 HALF: Final = 0.5
+SHOWN: Final = 60
+"""Letters of a name that is too long which are shown."""
 
 
 class Unfollowed(RuntimeError):
@@ -34,6 +36,8 @@ class Fault(RuntimeError):
 
 def told(error: Exception) -> str:
     """The error in one line; for a fault it names the file with the traceback."""
+    if isinstance(error, OSError) and error.errno == errno.ENAMETOOLONG:
+        return f"the name {str(error.filename)[:SHOWN]!r}... is too long: use a shorter one"
     if _is_for_the_user(error) or isinstance(error, Fault):
         return str(error)
     with tempfile.NamedTemporaryFile(
@@ -84,7 +88,8 @@ def _refuse_unread(clips: Mapping[str, Facts]) -> None:
 
 
 def _is_for_the_user(error: Exception) -> bool:
-    """Whether it is an exception class of ours, or a full disk; anything else is a fault."""
-    if isinstance(error, OSError) and error.errno in FULL:
+    """Whether it is an exception class of ours, a full disk or too long a name; anything else is a
+    fault."""
+    if isinstance(error, OSError) and error.errno in (*FULL, errno.ENAMETOOLONG):
         return True
     return type(error).__module__.split(".")[0] in PACKAGES

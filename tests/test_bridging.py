@@ -19,6 +19,7 @@ from moving import random_joints
 from osc_reader import read_osc
 from rich.console import Console
 
+from common.bus.bus import BusError
 from common.bus.bus_keys import KeysError
 from common.bus.messages import Body, Message, Posture
 from runtime.bridges import bridging, senders
@@ -210,3 +211,28 @@ def test_postures_are_forwarded_beside_the_bodies_and_the_first_persons_alone_by
     told = [place for packet in packets for place, _ in read_osc(packet)]
     said = [each.replace("/person/2", "").replace("/person/3", "") for each in told]
     assert said.count(address) == people
+
+
+def test_no_thread_waits_where_no_run_answers(monkeypatch: pytest.MonkeyPatch) -> None:
+    """One that returned from Zenoh while Python ends would abort the process."""
+    begun: list[str] = []
+
+    def subscribed(*_: object, kind: type[Message] = Body, **__: object) -> Iterator[Message]:
+        begun.append(kind.__name__)
+        raise BusError("nobody answers")
+        yield
+
+    monkeypatch.setattr(bridging, "subscribe", subscribed)
+    monkeypatch.setattr(senders, "osc_sender", lambda _: print)
+    with pytest.raises(BusError):
+        bridging.bridge("osc", "tcp/127.0.0.1:7447", "a", "127.0.0.1:9000", Console(quiet=True))
+    assert begun == ["Body"]
+    assert not [one for one in threading.enumerate() if one.name == "postures"]
+
+
+@pytest.mark.slow
+def test_a_bridge_that_finds_no_run_ends_with_its_code() -> None:
+    asked = [sys.executable, "-m", "tritrack", "bridge", "osc", "--endpoint", "tcp/127.0.0.1:1"]
+    ended = subprocess.run(asked, capture_output=True, text=True, check=False, timeout=120)
+    assert "error: nobody answers at tcp/127.0.0.1:1 after 60 s" in ended.stderr
+    assert ended.returncode == 2, ended.stderr

@@ -19,6 +19,14 @@ def test_what_a_user_can_mend_is_told_as_it_is(error: Exception) -> None:
     assert (code_of(error), told(error)) == (2, str(error))
 
 
+def test_a_name_that_is_too_long_is_said_so() -> None:
+    """Any command and option may meet one, at the first look at the path."""
+    with pytest.raises(OSError, match="too long") as raised:
+        Path("a" * 300).is_file()
+    assert code_of(raised.value) == 2
+    assert told(raised.value) == f"the name '{'a' * 60}'... is too long: use a shorter one"
+
+
 def test_a_fault_is_one_line_and_its_traceback_is_kept(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -87,8 +87,12 @@ def test_what_cannot_be_recorded_is_refused_with_its_cure(
 ) -> None:
     with pytest.raises(ClipError, match="1 cameras: two to 8 make a clip"):
         record(cameras[:1], tmp_path / "one")
+    with pytest.raises(ClipError, match=r"one\.avi is named twice: name two cameras"):
+        record((cameras[0], cameras[1], cameras[0]), tmp_path / "twice")
+    assert not (tmp_path / "twice").exists()
     with pytest.raises(ClipError, match=r"gone\.avi"):
         record((cameras[0], tmp_path / "gone.avi"), tmp_path / "two")
+    assert not (tmp_path / "two").exists()
     (tmp_path / "old").mkdir()
     (tmp_path / "old" / "cam1.mp4").write_bytes(b"old")
     with pytest.raises(FileRefused, match="holds a clip: name another --out, or say --force"):

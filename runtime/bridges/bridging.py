@@ -54,7 +54,11 @@ def bridge(
 
 
 def _forward(sender: Sender, bodies: Iterable[Body], postures: Subscription[Posture]) -> int:
-    """Postures go from a thread of their own: they come after the body that they are of."""
+    """Postures go from a thread of their own: they come after the body that they are of.
+
+    It begins with the first body, so that no thread waits for a run as this process ends: Python
+    aborts at its end where one returns from Zenoh then.
+    """
     person = [0]
 
     def forward_postures() -> None:
@@ -64,10 +68,12 @@ def _forward(sender: Sender, bodies: Iterable[Body], postures: Subscription[Post
                     sender.send_posture(posture)
 
     thread = threading.Thread(target=forward_postures, name="postures", daemon=True)
-    thread.start()
     sent = 0
     for body in of_first(bodies) if sender.is_of_one else bodies:
+        if thread.ident is None:
+            thread.start()
         person[0] = body.person
         sent += sender.send_body(body)
-    thread.join(ENDS_S)
+    if thread.ident is not None:
+        thread.join(ENDS_S)
     return sent

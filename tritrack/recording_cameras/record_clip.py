@@ -5,6 +5,7 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
+from itertools import combinations
 from pathlib import Path
 from typing import Final
 
@@ -48,25 +49,18 @@ def record_clip(
         `later_s`, by how much each shows the same motion later than the first, null where unsure.
 
     Raises:
-        ClipError: When there are not two to eight cameras, or one gives no picture.
-        FileRefused: When a clip is there.
+        ClipError: When there are not two to eight cameras, one is named twice or gives no picture.
+        FileRefused: When a clip is there, or a camera plays a video of it.
         OSError: When the folder cannot be written.
     """
-    if not 2 <= len(sources) <= len(CLIP_CAMERAS):
-        raise ClipError(f"{len(sources)} cameras: two to {len(CLIP_CAMERAS)} make a clip")
-    old = [*folder.glob("cam[1-8].*"), *folder.glob("meta.json")] if folder.is_dir() else []
-    if old and not force:
-        raise FileRefused(f"{folder} holds a clip: name another --out, or say --force")
-    for played in filter(is_recorded, sources):
-        if Path(played).exists() and any(path.samefile(played) for path in old):
-            raise FileRefused(f"{played} plays as a camera, and would be replaced: another --out")
-    folder.mkdir(parents=True, exist_ok=True)
+    old = _replaced(sources, folder, force)
     with ExitStack() as cameras:
         takes = []
         for name, source in zip(CLIP_CAMERAS, sources, strict=False):
             takes.append(CameraTake(name, source, folder))
             cameras.callback(takes[-1].end)
         _wait_for(takes)
+        folder.mkdir(parents=True, exist_ok=True)
         for path in old:
             path.unlink()
         for take in takes:
@@ -81,6 +75,26 @@ def record_clip(
 
         why = _watched(takes, folder, tick, stop)
     return _finished(takes, folder, time.monotonic() - began_s, why)
+
+
+def _replaced(sources: Sequence[Source], folder: Path, force: bool) -> list[Path]:
+    """The files of the clip that is there and may be replaced.
+
+    Raises:
+        ClipError, FileRefused: As `record_clip`.
+    """
+    if not 2 <= len(sources) <= len(CLIP_CAMERAS):
+        raise ClipError(f"{len(sources)} cameras: two to {len(CLIP_CAMERAS)} make a clip")
+    for one, other in combinations(sources, 2):
+        if one == other:
+            raise ClipError(f"{named(one)} is named twice: name two cameras")
+    old = [*folder.glob("cam[1-8].*"), *folder.glob("meta.json")] if folder.is_dir() else []
+    if old and not force:
+        raise FileRefused(f"{folder} holds a clip: name another --out, or say --force")
+    for played in filter(is_recorded, sources):
+        if Path(played).exists() and any(path.samefile(played) for path in old):
+            raise FileRefused(f"{played} plays as a camera, and would be replaced: another --out")
+    return old
 
 
 def _wait_for(takes: Sequence[CameraTake]) -> None:
