@@ -55,8 +55,8 @@ export class Cameras {
       this.chosen = box.checked ? [...this.chosen, camera] : this.chosen.filter((one) => one !== camera);
       this.draw();
     });
-    return element("li", {},
-      picture ? element("img", { src: `${picture}?${Date.now()}`, alt: `what ${name} (${where}) sees`, "data-picture": picture }) : element("div", { className: "blank" }),
+    return element("li", { className: `${number ? "chosen" : ""} ${on ? "" : "closed"}` },
+      picture ? element("img", { src: `${picture}?${Date.now()}`, alt: `what ${name} (${where}) sees`, "data-picture": picture }) : on ? element("div", { className: "blank" }) : "",
       element("div", {},
         element("label", {}, box, name + (number ? `: camera ${number}` : "")),
         element("p", { className: "quiet" }, where),

@@ -52,7 +52,7 @@ export class Tray {
     const whole = got === bytes;
     const state = fault || (whole ? facts || (kind === "calibration" ? "a calibration" : "looking at it …") : `${size(got)} of ${size(bytes)}`);
     return element("li", { className: "row" },
-      element("div", {}, element("h3", {}, camera + name), element("p", { className: fault ? "bad" : "quiet" }, `${state}${whole ? `, ${size(bytes)}` : ""}`),
+      element("div", {}, element("h3", { title: name }, camera + name), element("p", { className: fault ? "bad" : "quiet" }, `${state}${whole && !fault ? `, ${size(bytes)}` : ""}`),
         whole ? "" : element("progress", { max: bytes, value: got, "aria-label": `${name}: on its way` })),
       element("div", { className: "buttons" },
         n > 0 ? button(`up-${file}`, "▲", () => this.link.say({ type: "raise", file }), { ariaLabel: `${name}: one camera earlier`, title: "one camera earlier" }) : "",
