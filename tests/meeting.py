@@ -1,6 +1,5 @@
 """A run that says made-up bodies on a bus of its own, for whoever listens from outside."""
 
-import socket
 import threading
 import time
 from collections.abc import Iterator
@@ -15,14 +14,13 @@ from common.body.extremities import extremities
 from common.bus.bus import open_hub
 from common.bus.messages import Body
 from common.config.part_settings import BusSettings
+from runtime.live.free_ports import free_port
 
 HZ = 30.0
 
 
 def free_endpoint() -> str:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return f"tcp/127.0.0.1:{probe.getsockname()[1]}"
+    return f"tcp/127.0.0.1:{free_port()}"
 
 
 def a_body(frame: int, joints_m: np.ndarray) -> Body:

@@ -16,6 +16,7 @@ import msgspec
 import pytest
 import zenoh
 from local_bus import LocalBus
+from meeting import free_endpoint
 
 from common.body.observation import Box, Observation
 from common.bus import bus as bus_module
@@ -66,9 +67,7 @@ def a_report(viewer: int, frame: int, upper_body_px: float = 0.0) -> View:
 
 @pytest.fixture
 def endpoint() -> str:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return f"tcp/127.0.0.1:{probe.getsockname()[1]}"
+    return free_endpoint()
 
 
 @pytest.fixture

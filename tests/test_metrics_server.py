@@ -11,13 +11,12 @@ pytest.importorskip("prometheus_client", reason="pip install 'tritrack[metrics]'
 from metrics_reader import read
 from prometheus_client.core import GaugeMetricFamily
 
+from runtime.live.free_ports import free_port
 from runtime.outside.metrics_server import served
 
 
 def free_address() -> str:
-    with socket.socket() as door:
-        door.bind(("127.0.0.1", 0))
-        return f"127.0.0.1:{door.getsockname()[1]}"
+    return f"127.0.0.1:{free_port()}"
 
 
 def asked(address: str, path: str) -> tuple[int, str]:

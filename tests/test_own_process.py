@@ -15,10 +15,10 @@ import pytest
 from common.platform.linux.own_process import end_with_parent
 from runtime.live.process_table import Part, end, started
 
-SOON_S = 2.0
+SOON_S = 10.0
 PR_GET_PDEATHSIG = 2
 """prctl(2)."""
-PATIENCE_S = 20.0
+PATIENCE_S = 60.0
 
 PARENT = """
 import sys, time

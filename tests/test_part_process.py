@@ -2,6 +2,7 @@
 
 import os
 import signal
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from typing import Any
@@ -143,6 +144,40 @@ def test_what_is_taken_over_is_the_supervisors_own_again_afterwards(
     assert os.environ["OMP_NUM_THREADS"] == "7"
     assert "NUMBA_NUM_THREADS" not in os.environ
     assert "LEFT_BEHIND" not in os.environ
+
+
+@pytest.mark.parametrize("aside", [False, True], ids=["main thread", "another"])
+def test_a_ctrl_c_that_a_worker_does_not_hear_ends_none_that_starts_a_worker(
+    monkeypatch: pytest.MonkeyPatch, aside: bool
+) -> None:
+    """It came while the first run was about to compile; starting the tracker lets it through. A
+    thread aside cannot keep it off, and starts its worker yet."""
+    lifted: list[bool] = []
+
+    def ensure_running() -> None:
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, (signal.SIGINT,))
+        lifted.append(True)
+
+    def starts() -> None:
+        signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT,))
+        if not aside:
+            signal.raise_signal(signal.SIGINT)
+        with part_process.inherited():
+            pass
+
+    monkeypatch.setattr("multiprocessing.resource_tracker.ensure_running", ensure_running)
+    handler, before = signal.getsignal(signal.SIGINT), signal.pthread_sigmask(signal.SIG_BLOCK, ())
+    try:
+        if aside:
+            thread = threading.Thread(target=starts)
+            thread.start()
+            thread.join()
+        else:
+            starts()
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+    assert lifted == [True]
+    assert signal.getsignal(signal.SIGINT) is handler
 
 
 @pytest.mark.parametrize("forked", [True, False])

@@ -50,6 +50,7 @@ class Service:
 
     def __init__(self, folder: Path) -> None:
         self.folder, self.address = folder, free_address()
+        self._ended: Callable[[], int | None] = lambda: None
 
     def write(self, *, together: bool = False, **sizes: str) -> None:
         """Sites by their names, with the sizes of their pictures; at once, as editors do."""
@@ -75,6 +76,7 @@ class Service:
         )
         if terminal is not None:
             os.close(terminal)
+        self._ended = own.poll
         try:
             yield psutil.Process(own.pid)
         finally:
@@ -91,6 +93,7 @@ class Service:
         until_s = time.monotonic() + PATIENCE_S
         while not seen():
             assert time.monotonic() < until_s, f"waited in vain for {what}: {self.health()}"
+            assert self._ended() is None, f"it ended with {self._ended()} before {what}"
             time.sleep(0.1)
 
     def until_well(self, *names: str) -> None:

@@ -14,7 +14,7 @@ import psutil
 import pytest
 from rich.console import Console
 from spoiling import copied, cut_off, edit_json, uncalibrated
-from waiting import until
+from waiting import until_of
 
 from common.bus.control_messages import Pulse
 from common.config.part_settings import PageSettings
@@ -126,10 +126,11 @@ def test_a_deliberate_end_is_no_failure(
 
     A terminal sends Ctrl-C to the whole group; a service manager ends the supervisor alone.
     """
-    settings = settings_of(clip)
-    text = f'clip = "{clip}"\n[page]\nport = 0\n[bus]\nendpoint = "{settings.bus.endpoint}"\n'
+    slow = slowed(clip, tmp_path / "slow", 5.0)
+    settings = settings_of(slow)
+    text = f'clip = "{slow}"\n[page]\nport = 0\n[bus]\nendpoint = "{settings.bus.endpoint}"\n'
     (tmp_path / "run.toml").write_text(text)
-    out = tmp_path / "out"
+    out, log = tmp_path / "out", tmp_path / "out" / "log.txt"
     words = ["live", str(tmp_path / "run.toml"), "--out", str(out)]
     run = subprocess.Popen(
         [sys.executable, "-m", "tritrack", *words],
@@ -139,14 +140,10 @@ def test_a_deliberate_end_is_no_failure(
         start_new_session=True,
     )
     if moment == "tracking":
-        until(lambda: measured(out) or run.poll() is not None)
+        until_of(run, lambda: measured(out), log)
     else:
-        until((out / "log.txt").is_file)
+        until_of(run, log.is_file, log)
         time.sleep(0.5)
-    begun = measured(out) if moment == "tracking" else (out / "log.txt").is_file()
-    if run.poll() is not None or not begun:
-        run.kill()
-        pytest.fail("".join((f"not {moment}\n", *run.communicate(), log_of(out))))
     children = psutil.Process(run.pid).children(recursive=True)
     (os.killpg if whole_group else os.kill)(run.pid, number)
     said, errors = run.communicate(timeout=60)
@@ -168,12 +165,15 @@ def test_a_deliberate_end_is_no_failure(
 @pytest.mark.slow
 def test_what_was_measured_outlives_a_run_that_is_killed(clip: Path, tmp_path: Path) -> None:
     """Its processes end with it, its ports are free, and its folder is read as any other."""
-    settings, out = settings_of(clip), tmp_path / "out"
-    text = f'clip = "{clip}"\n[page]\nport = 0\n[bus]\nendpoint = "{settings.bus.endpoint}"\n'
+    slow, out = slowed(clip, tmp_path / "slow", 5.0), tmp_path / "out"
+    settings = settings_of(slow)
+    text = f'clip = "{slow}"\n[page]\nport = 0\n[bus]\nendpoint = "{settings.bus.endpoint}"\n'
     (tmp_path / "run.toml").write_text(text)
     words = ["live", str(tmp_path / "run.toml"), "--out", str(out)]
-    run = subprocess.Popen([sys.executable, "-m", "tritrack", *words], stderr=subprocess.DEVNULL)
-    assert until(lambda: measured(out) > 5)
+    run = subprocess.Popen(
+        [sys.executable, "-m", "tritrack", *words], stderr=subprocess.PIPE, text=True
+    )
+    until_of(run, lambda: measured(out) > 5, out / "log.txt")
     children = psutil.Process(run.pid).children(recursive=True)
     run.kill()
     run.wait()
@@ -184,11 +184,6 @@ def test_what_was_measured_outlives_a_run_that_is_killed(clip: Path, tmp_path: P
     found = open_run(out)
     assert len(found.poses["frame"]) > 5
     assert "cut short" in found.summary["warnings"][0]
-
-
-def log_of(out: Path) -> str:
-    log = out / "log.txt"
-    return log.read_text() if log.is_file() else "no log"
 
 
 def measured(out: Path) -> int:

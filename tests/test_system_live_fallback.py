@@ -87,6 +87,8 @@ class Witness:
         """Frame of the last body before the harm."""
         self.over = threading.Event()
         """Ends the run."""
+        self._ended = threading.Event()
+        """The run is over: what was not heard yet never comes."""
         self._settings, self._harm = bus, harm
         self._thread = threading.Thread(target=self._run)
         self.failure: BaseException | None = None
@@ -96,6 +98,7 @@ class Witness:
         return self
 
     def __exit__(self, *_: object) -> None:
+        self._ended.set()
         self._thread.join()
         if self.failure is not None:
             raise self.failure
@@ -119,7 +122,7 @@ class Witness:
                     yield bus
                 return
             except BusError:
-                if time.monotonic() > until_s:
+                if time.monotonic() > until_s or self._ended.is_set():
                     raise
 
     def until(self, what: str, seen: Callable[[], bool]) -> None:
@@ -127,11 +130,13 @@ class Witness:
         until_s = time.monotonic() + PATIENCE_S
         while not seen():
             assert time.monotonic() < until_s, f"waited in vain for {what}"
-            body = self._bus_bodies.take(0.02)
+            ended = self._ended.is_set()
+            body = self._bus_bodies.take(1.0 if ended else 0.02)
             self.bodies += [] if body is None else [body, *self._bus_bodies.drain()]
             for pulse in self._bus_pulses.drain():
                 self.states.append((pulse.process, pulse.state))
                 self.said += [x for x in pulse.detail.splitlines() if x not in self.said]
+            assert body or not ended or seen(), f"the run ended before {what}: {self.said}"
 
     def until_views(self, views: Views, frames: int = 3) -> None:
         """Listen until the last few bodies were made of these views."""

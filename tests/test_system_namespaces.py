@@ -172,6 +172,7 @@ class Room:
         until_s = time.monotonic() + WAIT_S
         while not is_so(heard := self.heard()):
             assert time.monotonic() < until_s, (heard.logs, heard.pulses[-4:])
+            assert self.parts["integrator"].poll() is None, heard.logs
             time.sleep(0.1)
         return heard
 

@@ -2,6 +2,7 @@
 
 import multiprocessing
 import signal
+import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
 from multiprocessing import resource_tracker
@@ -53,11 +54,26 @@ def inherited() -> Iterator[None]:
     heard = signal.pthread_sigmask(signal.SIG_BLOCK, OF_TERMINALS)
     try:
         with handed_down(FRUGAL):
-            resource_tracker.ensure_running()  # blocked as well; its start unblocks SIGINT
+            with deaf() if signal.SIGINT in heard else nullcontext():
+                resource_tracker.ensure_running()  # blocked as well; its start unblocks SIGINT
             signal.pthread_sigmask(signal.SIG_BLOCK, OF_TERMINALS)
             yield
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, heard)  # a site's run blocks them itself
+
+
+@contextmanager
+def deaf() -> Iterator[None]:
+    """No Ctrl-C is heard, nor what came while it was blocked: for a process without terminal
+    signals that starts another one. Python lets the main thread alone say so."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def _run(
