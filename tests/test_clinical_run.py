@@ -52,3 +52,8 @@ def test_a_run_from_before_there_were_extremities_has_all_but_the_ankles(run: Pa
     assert np.isnan(found.angles_deg[:, NAMES.index("ankle_angle_l")]).all()
     assert found.bands_mm.shape == (6, 15, 2)
     assert np.isnan(found.bands_mm[3]).all()
+
+
+def test_a_run_that_ended_before_its_first_frame_is_a_table_without_rows(tmp_path: Path) -> None:
+    (line,) = angles_csv(open_run(written(tmp_path, [])).poses).splitlines()
+    assert line.startswith("frame,person,time_s,status,")

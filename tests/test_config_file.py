@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from common.config import config_file
-from common.config.config_file import load
-from common.config.part_settings import SettingsError
+from common.config.config_file import load, with_absolute_paths
+from common.config.part_settings import CameraSettings, SettingsError
 from common.config.settings import Settings
 
 CONFIGS = Path(__file__).parents[1] / "configs"
@@ -209,3 +209,19 @@ def test_a_variable_that_is_not_set_is_named(
 def test_a_bus_that_others_reach_without_keys_must_be_wanted(tmp_path: Path) -> None:
     text = "[bus]\nendpoint = 'tcp/192.168.1.5:7447'\nopen_to_all = true"
     assert load(written(tmp_path, text)).bus.open_to_all
+
+
+def test_what_a_run_keeps_of_its_settings_has_absolute_paths(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A sign that a settings file takes for a variable stays; a word is no path."""
+    monkeypatch.chdir(tmp_path)
+    camera = CameraSettings(source="one $5.avi", background="/rooms/empty.png")
+    kept = with_absolute_paths(Settings(clip="walk", opening="t.avi", cameras={"cam1": camera}))
+    assert (kept.clip, kept.opening) == (str(tmp_path / "walk"), str(tmp_path / "t.avi"))
+    assert kept.cameras["cam1"].source == str(tmp_path / "one $5.avi")
+    assert kept.cameras["cam1"].background == "/rooms/empty.png"
+    assert (kept.calibration, kept.landmarks, kept.recognizer.model) == ("", "own", "")
+    own = with_absolute_paths(Settings(landmarks="points"))
+    assert own.landmarks == str(tmp_path / "points")
+    assert with_absolute_paths(kept) == kept

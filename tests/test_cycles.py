@@ -60,3 +60,9 @@ def test_what_does_not_repeat_itself_has_no_cycles() -> None:
     assert cycles_of(still, time_s).spans == ()
     assert cycles_of(np.full((150, 2), np.nan), time_s).spans == ()
     assert cycles_of(np.zeros((2, 2)), time_s[:2]).spans == ()
+
+
+@pytest.mark.parametrize("time_s", [np.zeros(40), np.full(40, np.nan)])
+def test_times_that_do_not_increase_have_no_cycles(time_s: np.ndarray) -> None:
+    angles_deg = np.sin(np.arange(40) / 2)[:, None] * 30
+    assert cycles_of(angles_deg, time_s).spans == cycles_of(angles_deg[:0], time_s[:0]).spans

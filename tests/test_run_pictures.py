@@ -1,5 +1,6 @@
 """A run's pictures: those of its own instants, cameras beside each other, late ones set back."""
 
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -7,8 +8,10 @@ import pytest
 from written_runs import SIZE, body, grey_of, written
 
 from common.body.body import rest_pose
+from common.config.settings import Settings
 from common.video.decoding import Decoder
 from runtime.store.past_run import open_run
+from runtime.store.runs import write_run
 from tritrack.reporting.run_pictures import NoPictures, clip_of, moments
 
 LATE = 3
@@ -54,4 +57,37 @@ def test_videos_that_are_gone_are_named(tmp_path: Path) -> None:
     folder = written(tmp_path, [body(0, rest_pose())])
     (tmp_path / "clip" / "cam2.avi").unlink()
     with Decoder() as decoder, pytest.raises(NoPictures, match=r"cam2\.avi"):
+        clip_of(open_run(folder), decoder)
+
+
+def test_a_run_is_of_its_own_videos_whatever_the_present_folder_is(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its clip was named by a relative path, by which another folder has another clip."""
+    made, elsewhere = tmp_path / "made", tmp_path / "elsewhere"
+    made.mkdir()
+    (elsewhere / "clip").mkdir(parents=True)
+    folder = written(made, [body(0, rest_pose())])
+    monkeypatch.chdir(made)
+    write_run(folder, [body(0, rest_pose())], Settings(clip="clip"), {})
+    monkeypatch.chdir(elsewhere)
+    for camera in ("cam1.avi", "cam2.avi"):
+        shutil.copy(made / "clip" / camera, elsewhere / "clip" / camera)
+    with Decoder() as decoder:
+        clip = clip_of(open_run(folder), decoder)
+    assert [view.source for view in clip.views] == [
+        str(made / "clip" / camera) for camera in ("cam1.avi", "cam2.avi")
+    ]
+
+
+@pytest.mark.parametrize("kept", [True, False])
+def test_a_live_run_says_where_what_its_cameras_showed_is(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, kept: bool
+) -> None:
+    folder = written(tmp_path, [body(0, rest_pose())])
+    monkeypatch.setattr("tritrack.reporting.run_pictures.is_recorded", lambda _: False)
+    if kept:
+        (folder / "pictures").mkdir()
+    says = rf"tritrack track .*{folder.name}/pictures$" if kept else "of cameras, which keep none"
+    with Decoder() as decoder, pytest.raises(NoPictures, match=says):
         clip_of(open_run(folder), decoder)

@@ -69,7 +69,7 @@ def angles_csv(poses: Arrays) -> str:
     bands = [f"{name}_{share}_deg" for name in NAMES for share in SHARES]
     places = [f"{name}_{share}_mm" for name in JOINT_NAMES for share in SHARES]
     table.writerow(["frame", "person", "time_s", "status", *NAMES, *bands, *places])
-    numbers = [part.reshape(len(part), -1) for part in run]
+    numbers = [part.reshape(len(part), math.prod(part.shape[1:])) for part in run]
     for n, values in enumerate(np.concatenate(numbers, axis=1).tolist()):
         head = [int(poses["frame"][n]), int(poses["person"][n]), f"{poses['time_s'][n]:.4f}"]
         cells = ["" if math.isnan(value) else f"{value:.2f}" for value in values]

@@ -48,7 +48,7 @@ def cycles_of(angles_deg: Floats, time_s: Vector) -> Cycles:
 
     Args:
         angles_deg: (n, k), NaN where not known; an angle that is mostly not known is not used.
-        time_s: (n,) increasing.
+        time_s: (n,) increasing; where it does not, there is no cycle.
     """
     usable = np.isfinite(angles_deg).sum(axis=0) > 0.5 * len(angles_deg)
     known = np.asarray(np.isfinite(angles_deg[:, usable]).all(axis=1))
@@ -57,6 +57,8 @@ def cycles_of(angles_deg: Floats, time_s: Vector) -> Cycles:
     moved = angles_deg[known][:, usable]
     moved = moved - np.median(moved, axis=0)
     step_s = float(np.median(np.diff(time_s[known])))
+    if not step_s > 0:
+        return NONE
     best, most = NONE, 0.0
     for direction in np.linalg.svd(moved, full_matrices=False)[2][:DIRECTIONS]:
         calm = gaussian_filter1d(moved @ direction, CALM_S / step_s)

@@ -1,13 +1,14 @@
 """Settings files: TOML that overrides the defaults, with paths relative to the file."""
 
 import os
+from collections.abc import Callable
 from pathlib import Path
 from typing import Final
 
 import msgspec
 
 from common.config.explained import explained
-from common.config.part_settings import CameraSettings, SettingsError
+from common.config.part_settings import SettingsError
 from common.config.renamed_settings import settings_of, warn_of_renamed
 from common.config.settings import LANDMARK_SOURCES, NETWORK, Settings
 
@@ -57,17 +58,38 @@ def with_full_paths(settings: Settings, path: Path) -> Settings:
     Raises:
         SettingsError: When a variable is not set, or the landmarks do not exist.
     """
+    found = msgspec.structs.replace(settings, landmarks=_landmarks(settings.landmarks, path))
+    return _with_paths(found, lambda name: full_path(name, path))
+
+
+def with_absolute_paths(settings: Settings) -> Settings:
+    """Settings whose paths mean the same in any present folder, as those that a run keeps."""
+
+    def absolute(name: str) -> str:
+        return str(Path(name).absolute()) if name else ""
+
+    own = settings.landmarks
+    found = own if own in LANDMARK_SOURCES else absolute(own)
+    return _with_paths(msgspec.structs.replace(settings, landmarks=found), absolute)
+
+
+def _with_paths(settings: Settings, full: Callable[[str], str]) -> Settings:
+    """Settings with each path but that of landmarks replaced by what `full` makes of it."""
+    cameras = {
+        name: msgspec.structs.replace(
+            each, source=full(each.source), background=full(each.background)
+        )
+        for name, each in settings.cameras.items()
+    }
+    recognizer, bus = settings.recognizer, settings.bus
     return msgspec.structs.replace(
         settings,
-        landmarks=_landmarks(settings.landmarks, path),
-        clip=full_path(settings.clip, path),
-        calibration=full_path(settings.calibration, path),
-        opening=full_path(settings.opening, path),
-        cameras={name: _camera(camera, path) for name, camera in settings.cameras.items()},
-        recognizer=msgspec.structs.replace(
-            settings.recognizer, model=full_path(settings.recognizer.model, path)
-        ),
-        bus=msgspec.structs.replace(settings.bus, keys=full_path(settings.bus.keys, path)),
+        clip=full(settings.clip),
+        calibration=full(settings.calibration),
+        opening=full(settings.opening),
+        cameras=cameras,
+        recognizer=msgspec.structs.replace(recognizer, model=full(recognizer.model)),
+        bus=msgspec.structs.replace(bus, keys=full(bus.keys)),
     )
 
 
@@ -81,12 +103,6 @@ def full_path(name: str, path: Path) -> str:
     if "$" in filled:
         raise SettingsError(f"{path}: {name} names a variable that is not set: export it")
     return str(path.parent / filled) if name else ""
-
-
-def _camera(given: CameraSettings, path: Path) -> CameraSettings:
-    return msgspec.structs.replace(
-        given, source=full_path(given.source, path), background=full_path(given.background, path)
-    )
 
 
 def _landmarks(given: str, path: Path) -> str:

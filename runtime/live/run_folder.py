@@ -9,6 +9,7 @@ import msgspec
 
 from calibration.paper.calibration import write_rig
 from common.bus.messages import place_in_rig
+from common.config.config_file import with_absolute_paths
 from common.config.settings import Settings
 from common.npz_file import Facts
 from common.rig.camera import Rig
@@ -72,7 +73,9 @@ def new_journal(out: Path, clip: Clip, settings: Settings, notes: list[str]) -> 
             f"{out} holds a run that was cut short, which cannot be put aside "
             f"({error.strerror}): name another --out"
         ) from error
-    return Journal(out, JournalHead(settings=settings, facts=facts_of_clip(clip)))
+    return Journal(
+        out, JournalHead(settings=with_absolute_paths(settings), facts=facts_of_clip(clip))
+    )
 
 
 def refuse_kept_pictures(out: Path) -> None:

@@ -14,6 +14,7 @@ import numpy as np
 
 from common.atomic_file import replacing, unwritten
 from common.bus.messages import Body, Posture, Status
+from common.config.config_file import with_absolute_paths
 from common.config.settings import Settings
 from common.npz_file import Facts
 from runtime.store.joint_arrays import on_disk
@@ -53,14 +54,14 @@ def write_run(
     Args:
         folder: Created where missing.
         bodies: In the order of time; an instant that camera 1 missed (frame -1) gets no row.
-        settings: The resolved settings of the run.
+        settings: The resolved settings of the run; its summary has their paths as absolute ones.
         facts: Further facts for the summary: cameras (their names), seconds, scale_source, warnings
             ...
 
     Raises:
         RunError: When the folder or a file cannot be written: no space, no permission.
     """
-    rows = Rows(bodies)
+    rows, own = Rows(bodies), with_absolute_paths(settings)
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with (
@@ -69,7 +70,7 @@ def write_run(
             path.open("wb") as file,
         ):
             np.savez(file, allow_pickle=False, **arrays)
-        _write_json(folder / "summary.json", summary_of(rows, settings, facts))
+        _write_json(folder / "summary.json", summary_of(rows, own, facts))
         remove_exports(folder)
     except OSError as error:
         raise unwritable(folder, error) from error

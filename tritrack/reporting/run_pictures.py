@@ -24,6 +24,7 @@ from common.video.clip_sources import ClipError
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
 from common.video.pictures import is_recorded
+from runtime.live.run_folder import PICTURES
 from runtime.offline.frame_pairs import instants
 from runtime.store.past_run import PastRun
 from viewer.captured_frame import CapturedFrame
@@ -68,7 +69,12 @@ def clip_of(run: PastRun, decoder: Decoder) -> Clip:
     except (ClipError, SettingsError) as error:
         raise NoPictures(f"there are no pictures: {error}") from error
     if not all(is_recorded(view.source) for view in clip.views):
-        raise NoPictures("there are no pictures: the run is of cameras, which keep none")
+        kept = run.folder / PICTURES
+        raise NoPictures(
+            f"what the cameras of this live run showed is a clip of its own: tritrack track {kept}"
+            if kept.is_dir()
+            else "there are no pictures: the run is of cameras, which keep none"
+        )
     return msgspec.structs.replace(clip, views=tuple(_late(run, view) for view in clip.views))
 
 
