@@ -365,6 +365,17 @@ def test_a_clip_is_followed_again_where_one_camera_contradicts_all_others(
     assert told.odd == followed[-1]
 
 
+def test_a_clip_whose_person_tells_no_rig_is_refused_for_everyone_with_the_cause(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(lockstep, "open_clip", lambda *_: PAIR)
+    monkeypatch.setattr(lockstep, "outside_sources", lambda *_: nullcontext({}))
+    monkeypatch.setattr(lockstep, "by_person", lambda *_: Looked(PAIR, None, "nobody moves"))
+    decoders: Any = SimpleNamespace(of={1: None, 2: None})
+    with pytest.raises(ClipError, match=r"takes a calibration \(nobody moves\): make one"):
+        track_clip(Settings(people="all"), decoders)
+
+
 class Left(InMemory):
     """What a run left in its second half."""
 
@@ -560,3 +571,5 @@ def test_everyone_is_followed_where_a_calibration_says_who_is_where() -> None:
     refuse_everyone_unmeasured(uncalibrated, Settings())
     with pytest.raises(ClipError, match=r"^two: to follow everyone takes a calibration: make one"):
         refuse_everyone_unmeasured(uncalibrated, everyone)
+    with pytest.raises(ClipError, match=r"takes a calibration \(nobody moves\): make one"):
+        refuse_everyone_unmeasured(uncalibrated, everyone, "nobody moves")

@@ -159,7 +159,7 @@ def track_clip(
         job = _Job(settings, method, decoders, sources, watch, course, heard)
         looked = _as_left(by_person(clip, settings, method, decoders.of, sources), course)
         refuse_uncalibrated(looked.clip, looked.warning)
-        refuse_everyone_unmeasured(looked.clip, settings)
+        refuse_everyone_unmeasured(looked.clip, settings, looked.warning)
         followed = _followed(looked, job, began)
         clocks = clocks_seen(looked.clip, followed.witness)
         corrected = _corrected(looked, job, followed, clocks)

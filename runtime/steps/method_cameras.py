@@ -41,14 +41,20 @@ def refuse_uncalibrated(clip: Clip, why: str = "") -> None:
         )
 
 
-def refuse_everyone_unmeasured(clip: Clip, settings: Settings) -> None:
+def refuse_everyone_unmeasured(clip: Clip, settings: Settings, why: str = "") -> None:
     """Refuse to follow everyone where no calibration says who is where.
+
+    Args:
+        clip: The clip, with the calibration that was found.
+        settings: The run's settings.
+        why: Why the person gave none.
 
     Raises:
         ClipError: When there is none.
     """
     if settings.people == "all" and clip.rig is None:
+        cause = f" ({why})" if why else ""
         raise ClipError(
-            f"{clip.name}: to follow everyone takes a calibration: make one (tritrack calibrate "
-            "person), or follow one person (--people 1)"
+            f"{clip.name}: to follow everyone takes a calibration{cause}: make one (tritrack "
+            "calibrate person), or follow one person (--people 1)"
         )
