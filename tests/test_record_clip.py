@@ -16,6 +16,7 @@ from common.video import camera_file
 from common.video.clip_sources import ClipError
 from common.video.clips import open_clip
 from tritrack.recording_cameras import record_clip
+from tritrack.recording_cameras.camera_take import CameraTake
 from tritrack.recording_cameras.record_clip import record_clip as recorded
 
 
@@ -123,3 +124,22 @@ def test_a_camera_that_plays_what_would_be_replaced_is_refused(
     with pytest.raises(FileRefused, match=r"cam2\.avi plays as a camera, and would be replaced"):
         record((cameras[1], played), out, force=True)
     assert played.read_bytes() == cameras[0].read_bytes()
+
+
+def test_it_is_stopped_while_a_camera_does_not_answer(
+    cameras: tuple[Path, Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its first picture would be waited for as long as READY_S."""
+    stop, play = threading.Event(), CameraTake._played
+
+    def late(take: CameraTake) -> Iterator[Any]:
+        take._end.wait(30.0)
+        yield from play(take)
+
+    monkeypatch.setattr(CameraTake, "_played", late)
+    threading.Timer(0.3, stop.set).start()
+    with pytest.raises(ClipError, match="stopped before a picture was recorded"):
+        record(cameras, tmp_path / "walk", stop=stop)
+    with pytest.raises(ClipError, match="stopped before a picture was recorded"):
+        record((tmp_path / "none.avi", tmp_path / "neither.avi"), tmp_path / "walk", stop=stop)
+    assert not (tmp_path / "walk").exists()

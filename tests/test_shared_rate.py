@@ -101,3 +101,16 @@ def test_of_several_all_that_are_faster_meet_the_slowest() -> None:
     first, second, third = at_one_rate((view(1, 30.0), view(2, 15.0), view(3, 60.0)), 1)
     assert (first.picked[:3], second.picked, third.picked[:3]) == ((0, 2, 4), (), (0, 4, 8))
     assert {one.fps for one in (first, second, third)} == {15.0}
+
+
+def test_videos_of_a_killed_recording_are_met_by_their_times() -> None:
+    """They claim no number of frames."""
+    slow, fast = (
+        msgspec.structs.replace(
+            view(n, hz), frames=0, capture_s=tuple(k / hz for k in range(round(hz)))
+        )
+        for n, hz in ((1, 15.0), (2, 30.0))
+    )
+    thin = at_one_rate((slow, fast), 1)[1]
+    assert thin.picked == tuple(range(0, 30, 2))
+    assert thin.next_s(28, 1) == pytest.approx(1.0, abs=0.04)

@@ -239,6 +239,9 @@ def test_what_was_recorded_is_in_the_tray_and_in_the_list_until_it_is_deleted(
         wanted = [] if name == "torn" else ["walk_cam1.avi", "walk_cam2.avi"]
         assert page.tray == wanted, name
     assert sorted(path.name for path in recorded.iterdir()) == ["squat", "walk"]
+    full = Page(*(Begin(n, f"{n}.avi", 9) for n in range(5)), Take("squat"))
+    turned(desk, full)
+    assert (len(full.tray), len(full.told)) == (7, 1), "all of them or none"
     page = Page(Drop(None), Take("squat"), Delete("recording", "walk"), Take("walk"))
     turned(desk, page)
     assert page.tray == ["squat_cam1.avi", "squat_cam2.avi"]

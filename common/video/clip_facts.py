@@ -85,6 +85,12 @@ class ClipView(msgspec.Struct, frozen=True):
         return self.size if self.upright is None else (self.upright.width, self.upright.height)
 
     @property
+    def known_frames(self) -> int:
+        """Number of frames that the file claims; where it claims none, as one whose recording was
+        killed, of those whose time is known."""
+        return self.frames or len(self.capture_s)
+
+    @property
     def upright_source(self) -> tuple[int, int]:
         """Size of the whole picture, upright and with square pixels."""
         if self.upright is None:
@@ -117,7 +123,9 @@ class ClipView(msgspec.Struct, frozen=True):
         if not self.picked:
             return self.captured_s(index + every)
         place = bisect_right(self.picked, index)
-        return self.captured_s(self.picked[place] if place < len(self.picked) else self.frames)
+        return self.captured_s(
+            self.picked[place] if place < len(self.picked) else self.known_frames
+        )
 
     def is_looked_at(self, index: int) -> bool:
         """Whether a decoded frame is processed."""

@@ -286,7 +286,7 @@ def _oddities(views: tuple[ClipView, ...], meta: Meta, rig: Rig | None) -> Itera
             )
     for view in (view for view in views if view.picked):
         yield (
-            f"the views differ in rate: of the {view.frames} frames of {view.source} those "
+            f"the views differ in rate: of the {view.known_frames} frames of {view.source} those "
             f"{len(view.picked)} are looked at that meet the other's, {view.fps:g} a second"
         )
     for one, other in pairwise(views):

@@ -26,7 +26,7 @@ def at_one_rate(views: tuple[ClipView, ...], every: int) -> tuple[ClipView, ...]
         views: The views of the clip; live cameras are not resampled.
         every: Stride: every n-th frame of the slowest view is processed.
     """
-    if len(views) < 2 or not all(view.frames for view in views):
+    if len(views) < 2 or not all(view.known_frames for view in views):
         return views
     slow = min(views, key=lambda view: view.fps)
     return tuple(_meeting(view, slow, every) if _is_faster(view, slow) else view for view in views)
@@ -50,4 +50,4 @@ def _meeting(fast: ClipView, slow: ClipView, every: int) -> ClipView:
 
 
 def _times_s(view: ClipView) -> Vector:
-    return np.array([view.captured_s(n) for n in range(view.frames)])
+    return np.array([view.captured_s(n) for n in range(view.known_frames)])

@@ -49,7 +49,8 @@ def record_clip(
         `later_s`, by how much each shows the same motion later than the first, null where unsure.
 
     Raises:
-        ClipError: When there are not two to eight cameras, one is named twice or gives no picture.
+        ClipError: When there are not two to eight cameras, one is named twice or gives no picture,
+            or it is stopped before.
         FileRefused: When a clip is there, or a camera plays a video of it.
         OSError: When the folder cannot be written.
     """
@@ -57,9 +58,10 @@ def record_clip(
     with ExitStack() as cameras:
         takes = []
         for name, source in zip(CLIP_CAMERAS, sources, strict=False):
+            _refuse_stopped(stop)  # a camera that does not answer takes seconds
             takes.append(CameraTake(name, source, folder))
             cameras.callback(takes[-1].end)
-        _wait_for(takes)
+        _wait_for(takes, stop)
         folder.mkdir(parents=True, exist_ok=True)
         for path in old:
             path.unlink()
@@ -97,9 +99,22 @@ def _replaced(sources: Sequence[Source], folder: Path, force: bool) -> list[Path
     return old
 
 
-def _wait_for(takes: Sequence[CameraTake]) -> None:
+def _refuse_stopped(stop: threading.Event) -> None:
+    if stop.is_set():
+        raise ClipError("stopped before a picture was recorded: nothing is written")
+
+
+def _wait_for(takes: Sequence[CameraTake], stop: threading.Event) -> None:
+    """Wait for the first picture of each.
+
+    Raises:
+        ClipError: When one gives none, or `stop` is set.
+    """
+    until_s = time.monotonic() + READY_S
     for take in takes:
-        if not take.is_ready.wait(READY_S) or take.is_over:
+        while not take.is_ready.wait(LOOK_S) and time.monotonic() < until_s:
+            _refuse_stopped(stop)
+        if not take.is_ready.is_set() or take.is_over:
             why = take.fault or f"no picture within {READY_S:.0f} s"
             raise ClipError(
                 f"{named(take.source)} gives no picture: {why}; see that it is plugged in and that "

@@ -256,6 +256,7 @@ class StartDesk:
         videos = recorded_videos(self._runs, name)
         if not videos:
             raise PlanError(f"there is no recording {name!r} any more")
+        self._uploads.refuse_more(len(videos))
         for video in videos:
             self._look_at(self._uploads.put_back(video, f"{name}_{video.name}"))
 

@@ -188,6 +188,18 @@ class Uploads:
         self.files.append(found)
         return found
 
+    def refuse_more(self, number: int) -> None:
+        """Refuse files of which some would find no room.
+
+        Raises:
+            UploadRefused: When there are too many.
+        """
+        if len(self.files) + number > MOST_VIEWS:
+            raise UploadRefused(
+                f"{len(self.files)} files are there already, and {MOST_VIEWS} is the most: take "
+                "some away"
+            )
+
     def _refuse_one_more(self, name: str) -> None:
         if len(self.files) >= MOST_VIEWS:
             raise UploadRefused(f"{name}: {MOST_VIEWS} files are there already: take one away")
