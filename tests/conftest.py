@@ -1,12 +1,15 @@
 """What the tests share: where the clips lie."""
 
 import os
+import pickle
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 import pytest
 from hypothesis import settings
+from waiting import until
 
 if TYPE_CHECKING:
     from runtime.offline.lockstep import Tracked
@@ -24,11 +27,15 @@ settings.load_profile("untimed")
 
 MARKS: Final = ("slow", "live")
 LONGEST: Final = (
-    *("readme", "proposal_training", "system_wheel", "system_namespaces", "system_live_fallback"),
-    *("person_calibration", "resuming", "performance", "landmark_network", "board_rig"),
-    *("system_commands", "lockstep", "live", "marking"),
+    *("readme", "system_wheel", "system_namespaces", "system_live_fallback", "system_commands"),
+    *("lockstep", "proposal_training", "demo", "resuming", "performance", "serve", "tracker"),
+    *("start", "video_training", "board_rig", "compiled", "launch", "person_calibration"),
+    *("live", "marking"),
 )
 """Files that take minutes: begun first, so that none is left alone at the end."""
+
+MADE_S: Final = 900.0
+"""Patience with another process that makes what all need: it may have to compile."""
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
@@ -75,36 +82,68 @@ def data_dir() -> Path:
     return folder
 
 
+def made_once(factory: pytest.TempPathFactory, name: str, make: Callable[[Path], object]) -> Path:
+    """A folder that one of the processes of tests makes for all; who changes it copies it before.
+
+    Args:
+        factory: Of this process; the folder lies beside what each has of its own.
+        name: The folder's name.
+        make: Fills it. Where that fails, the others go on too and see what there is.
+    """
+    own = factory.getbasetemp()
+    folder = (own.parent if "PYTEST_XDIST_WORKER" in os.environ else own) / name
+    done = folder.with_name(f"{name} is made")
+    try:
+        folder.mkdir()
+    except FileExistsError:
+        assert until(done.exists, MADE_S), f"{folder} was not made in time"
+        return folder
+    try:
+        make(folder)
+    finally:
+        done.touch()
+    return folder
+
+
 @pytest.fixture(scope="session")
 def clip(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A made-up clip with truth: a person of no training set raises the right arm."""
     from synth.write import ClipSet, write_set
 
-    out = tmp_path_factory.mktemp("clips")
     wanted = ClipSet("postures", seed=90_001, postures=("raise_right_lateral",))
-    return write_set(out, wanted, (160, 120))[0]
+    folder = made_once(tmp_path_factory, "clips", lambda out: write_set(out, wanted, (160, 120)))
+    return next(folder.glob("*/meta.json")).parent
 
 
 @pytest.fixture(scope="session")
-def tracked_clip(clip: Path) -> "Tracked":
+def tracked_clip(clip: Path, tmp_path_factory: pytest.TempPathFactory) -> "Tracked":
     """What is made of that clip by default, by both views."""
-    from common.config.settings import Settings
-    from runtime.offline.lockstep import Decoders, track_clip
 
-    with Decoders() as decoders:
-        return track_clip(Settings(clip=str(clip)), decoders)
+    def track(out: Path) -> None:
+        from common.config.settings import Settings
+        from runtime.offline.lockstep import Decoders, track_clip
+
+        with Decoders() as decoders:
+            tracked = track_clip(Settings(clip=str(clip)), decoders)
+        (out / "tracked").write_bytes(pickle.dumps(tracked))
+
+    folder = made_once(tmp_path_factory, "tracked", track)
+    tracked: Tracked = pickle.loads((folder / "tracked").read_bytes())
+    return tracked
 
 
 @pytest.fixture(scope="session")
 def recorded_run(clip: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The folder of the same with its recording; who changes it copies it before."""
-    from rich.console import Console
+    """The folder of the same with its recording."""
 
-    from runtime.offline.batch import Asked, track_all
+    def record(out: Path) -> None:
+        from rich.console import Console
 
-    out = tmp_path_factory.mktemp("recorded")
-    track_all([clip], out, Asked(record=True), Console(quiet=True))
-    return out / clip.name
+        from runtime.offline.batch import Asked, track_all
+
+        track_all([clip], out, Asked(record=True), Console(quiet=True))
+
+    return made_once(tmp_path_factory, "recorded", record) / clip.name
 
 
 @pytest.fixture(scope="module")
