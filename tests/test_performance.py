@@ -83,7 +83,7 @@ def test_a_run_that_stops_every_thirty_instants_gives_the_same_bodies(
     mode: Mode, views: tuple[ViewerNumber, ...], calibrated: bool, clip: Path, tmp_path: Path
 ) -> None:
     folder = copied(clip, tmp_path / "clip")
-    refilmed(folder, lambda film: film[:70])
+    refilmed(folder, lambda film: film[:45])
     if not calibrated:
         (folder / "calibration.json").unlink()
     settings, work = Settings(clip=str(folder), mode=mode), Stopping()
