@@ -1,6 +1,7 @@
 """The folder of a live run: what one that was cut short left is put aside, not written over."""
 
 import json
+import os
 from pathlib import Path
 
 import pytest
@@ -19,6 +20,7 @@ from runtime.live.run_folder import (
     new_journal,
     new_log,
     new_pictures,
+    owned,
     refuse_kept_pictures,
 )
 from runtime.store.journal import has_journal
@@ -170,3 +172,16 @@ def test_a_run_does_not_replace_the_pictures_that_it_plays(tmp_path: Path) -> No
         with pytest.raises(LiveRefused, match="pictures, which it would replace: name another"):
             new_pictures(tmp_path / "run", clip, wanted)
     assert video.is_file()
+
+
+def test_two_live_runs_do_not_write_into_one_folder(tmp_path: Path) -> None:
+    out = tmp_path / "run"
+    with owned(out):
+        (file,) = out.iterdir()
+        with owned(out):
+            pass
+    assert [*out.iterdir()] == []
+    file.write_text(str(os.getppid()))
+    with pytest.raises(LiveRefused, match=rf"process {os.getppid()}\) writes into .*run: end it"):
+        owned(out).__enter__()
+    assert file.is_file()

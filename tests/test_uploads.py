@@ -12,9 +12,9 @@ from waiting import until
 
 from animator.start.wishes import Begin, Chunk
 from common.bus.messages import MOST_VIEWS
+from common.folder_owner import OWNER
 from tritrack.starting.uploads import (
     MOST_BYTES,
-    OWNER,
     SPARE_BYTES,
     UploadRefused,
     Uploads,

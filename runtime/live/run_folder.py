@@ -2,6 +2,8 @@
 
 import shutil
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Final
 
@@ -11,6 +13,7 @@ from calibration.paper.calibration import write_rig
 from common.bus.messages import place_in_rig
 from common.config.config_file import with_absolute_paths
 from common.config.settings import Settings
+from common.folder_owner import OWNER, other_owner, take
 from common.npz_file import Facts
 from common.rig.camera import Rig
 from common.rig.rig_file import CalibrationError, fitted
@@ -30,6 +33,30 @@ PICTURES: Final = "pictures"
 """Name of the folder with what the cameras showed, a clip, where a run keeps that."""
 KEPT: Final = ".kept-"
 """Prefix of the folder in which processes leave their state for a restart."""
+
+
+@contextmanager
+def owned(out: Path) -> Iterator[None]:
+    """A run folder for this process alone: two runs would take each other's files for those of
+    one that was cut short.
+
+    Raises:
+        LiveRefused: When another run writes into it, or it cannot be written.
+    """
+    file = out / f".{OWNER}"
+    if (other := other_owner(file)) is not None:
+        raise LiveRefused(
+            f"another live run (process {other}) writes into {out}: end it, or name another --out"
+        )
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+        take(file)
+    except OSError as error:
+        raise LiveRefused(f"cannot write {out}: {error.strerror}; name another --out") from error
+    try:
+        yield
+    finally:
+        file.unlink(missing_ok=True)
 
 
 def new_log(out: Path) -> Path:

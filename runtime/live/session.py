@@ -28,7 +28,14 @@ from runtime.live.page_desk import PageDesk
 from runtime.live.process_table import live_parts
 from runtime.live.recorded import SoFar, WholeRun
 from runtime.live.run_facts import facts_of, note_lost, note_unseen
-from runtime.live.run_folder import KEPT, finish_pictures, new_journal, new_log, new_pictures
+from runtime.live.run_folder import (
+    KEPT,
+    finish_pictures,
+    new_journal,
+    new_log,
+    new_pictures,
+    owned,
+)
 from runtime.live.screen import Screen
 from runtime.store.past_journal import Journalled
 from runtime.store.recording import Keep
@@ -79,6 +86,7 @@ def live(
     began, heard = time.monotonic(), nothing_heard()
     title = name or Path(settings.clip).name or "tritrack"
     with stopped_by_signals(console) as stop, ExitStack() as doors:
+        doors.enter_context(owned(out))
         log = new_log(out)
         launcher = platform().launcher(WARMED)
         desk = PageDesk(settings, out, title, ProcessContext(True, log), launcher)

@@ -10,16 +10,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Final
 
-import psutil
-
 from animator.start.wishes import Begin, Chunk
 from common.atomic_file import unwritten
 from common.bus.messages import MOST_VIEWS
+from common.folder_owner import OWNER, other_owner, take
 from tritrack.recording_cameras.recorded_clips import recorded_times
 
 FOLDER: Final = ".uploads"
-OWNER: Final = "owner"
-"""File in it with the number of the process whose page it is."""
 MOST_BYTES: Final = 1 << 33
 """Upper bound of a video, bytes: an hour of one camera is a tenth of it."""
 MOST_CALIBRATION_BYTES: Final = 1 << 24
@@ -104,15 +101,8 @@ def refuse_other_page(folder: Path) -> None:
     Raises:
         UploadRefused: When one does.
     """
-    owner = folder / OWNER
-    try:
-        number, began_s = int(owner.read_text()), owner.stat().st_mtime
-        other = psutil.Process(number)
-        is_there = number != os.getpid() and other.create_time() <= began_s
-        is_there = is_there and other.status() != psutil.STATUS_ZOMBIE  # killed, and not waited for
-    except (OSError, ValueError, psutil.Error):
-        return
-    if is_there:
+    number = other_owner(folder / OWNER)
+    if number is not None:
         raise UploadRefused(
             f"another start page (process {number}) works in {folder.parent}: use that one, or "
             "name another --runs"
@@ -135,7 +125,7 @@ class Uploads:
         shutil.rmtree(folder, ignore_errors=True)
         try:
             folder.mkdir(parents=True)
-            (folder / OWNER).write_text(str(os.getpid()))
+            take(folder / OWNER)
         except OSError as error:
             raise UploadRefused(unwritten(folder, error, "name another --runs")) from error
 
