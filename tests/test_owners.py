@@ -256,11 +256,22 @@ def test_two_who_are_never_in_one_view_and_in_one_place_may_be_one() -> None:
     lives = [life(1, LEFT_M, RED), life(2, LEFT_M, RED)]
     apart = [(0, -1), (-1, 0)]
     people = [[FIRST[0]], [FIRST[1]]]
-    assert owners.doubles(RIG, people, lives, apart) == [(0, 1)]
-    assert owners.doubles(RIG, people, lives, [(0, 0), (-1, 0)]) == []
-    assert owners.doubles(RIG, [[FIRST[0]], [SECOND[1]]], lives, apart) == []
+    assert owners.doubles(RIG, people, lives, apart, 1.0) == [(0, 1)]
+    assert owners.doubles(RIG, people, lives, [(0, 0), (-1, 0)], 1.0) == []
+    assert owners.doubles(RIG, [[FIRST[0]], [SECOND[1]]], lives, apart, 1.0) == []
     others = [lives[0], life(2, LEFT_M, BLUE)]
-    assert owners.doubles(RIG, people, others, apart) == []
+    assert owners.doubles(RIG, people, others, apart, 1.0) == []
+
+
+def test_two_who_are_expected_in_different_places_are_two_though_their_sight_lines_meet() -> None:
+    people = [[FIRST[0]], [FIRST[1]]]
+    near_m, far_m = ((LEFT_M[0], LEFT_M[1] - share * NEAR_M) for share in (0.9, 1.1))
+    for place_m, found in ((near_m, [(0, 1)]), (far_m, [])):
+        lives = [life(1, LEFT_M, RED), life(2, place_m, RED)]
+        assert owners.doubles(RIG, people, lives, [(0, -1), (-1, 0)], 1.0) == found
+    unknown = life(2, far_m, RED)._replace(joints_m=None)
+    lives = [life(1, LEFT_M, RED), unknown]
+    assert owners.doubles(RIG, people, lives, [(0, -1), (-1, 0)], 1.0) == [(0, 1)]
 
 
 def test_a_look_that_shows_nobody_is_no_stranger() -> None:

@@ -12,8 +12,8 @@ from common.body.clothes import TAKEN, colour_distance, exchange_gain
 from common.body.observation import Observation
 from common.rig.camera import Rig
 from integrator.belief import NOBODY
-from integrator.people.known_life import Life
-from integrator.people.observation_cost import HIDDEN, UNLIKE, cost_of, hidden_shares
+from integrator.people.known_life import PELVIS, Life, Places
+from integrator.people.observation_cost import HIDDEN, NEAR_M, UNLIKE, cost_of, hidden_shares
 from integrator.people.sight_gaps import (
     Apart,
     Gap,
@@ -140,16 +140,25 @@ def _clash(apart: Apart, own: Sequence[int], one: Place) -> float:
 
 
 def doubles(
-    rig: Rig, people: People, lives: Sequence[Life], known: Sequence[Sequence[int]]
+    rig: Rig, people: People, lives: Sequence[Life], known: Sequence[Sequence[int]], now_s: float
 ) -> list[tuple[int, int]]:
     """Pairs of known people, by their places, who may be one: each is shown by views that do not
-    show the other, their sight lines meet, and their clothes are alike."""
-    found = []
+    show the other, their sight lines meet, they are expected in one place, and their clothes are
+    alike. Sight lines alone also meet where those of two people cross.
+
+    Args:
+        rig: V cameras without distortion.
+        people: Of each view, without distortion.
+        lives: The known people.
+        known: Their observations.
+        now_s: Capture time.
+    """
+    found, expected_m = [], [life.expected_m(now_s) for life in lives]
     for (i, one), (j, other) in combinations(enumerate(known), 2):
         own, theirs = (
             {view for view, index in enumerate(each) if index >= 0} for each in (one, other)
         )
-        if not own or not theirs or own & theirs:
+        if not own or not theirs or own & theirs or _are_apart(expected_m[i], expected_m[j]):
             continue
         apart_m = max(
             sight_gap_m(rig, people, (a, one[a]), (b, other[b])) for a, b in product(own, theirs)
@@ -158,6 +167,13 @@ def doubles(
         if apart_m < MEETS_M and unlike < UNLIKE:
             found.append((i, j))
     return found
+
+
+def _are_apart(one_m: Places | None, other_m: Places | None) -> bool:
+    """Whether two people are expected in different places."""
+    if one_m is None or other_m is None:
+        return False
+    return float(np.linalg.norm(one_m[PELVIS] - other_m[PELVIS])) >= NEAR_M
 
 
 def exchanged(

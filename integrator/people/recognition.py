@@ -74,7 +74,7 @@ def recognised(state: State, instant: Instant, now_s: float) -> tuple[State, lis
     plain = undistorted_rig(rig)
     gaps = with_instant(state.gaps, plain, people)
     found = owners.owned(plain, people, state.lives, now_s, gaps)
-    pairs = owners.doubles(plain, people, state.lives, found.known)
+    pairs = owners.doubles(plain, people, state.lives, found.known, now_s)
     mistaken = owners.mistaken(people, found.known, gaps)
     lives, known = corrections.loosened(state.lives, found.known, mistaken, state.room)
     swapped = owners.exchanged(people, lives, known)
