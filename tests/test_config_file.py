@@ -225,3 +225,15 @@ def test_what_a_run_keeps_of_its_settings_has_absolute_paths(
     own = with_absolute_paths(Settings(landmarks="points"))
     assert own.landmarks == str(tmp_path / "points")
     assert with_absolute_paths(kept) == kept
+
+
+def test_a_file_whose_own_name_has_a_dollar_is_found(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The start page writes settings that name files as they are."""
+    monkeypatch.setenv("HOME", "/elsewhere")
+    for name in ("my $5 runs", "of $HOME"):
+        (tmp_path / name).mkdir()
+        assert load(written(tmp_path, f"clip = '{name}'")).clip == str(tmp_path / name)
+        assert load(written(tmp_path, f"clip = '{tmp_path / name}'")).clip == str(tmp_path / name)
+    assert load(written(tmp_path, "clip = '$HOME/walk'")).clip == "/elsewhere/walk"

@@ -96,9 +96,13 @@ def _with_paths(settings: Settings, full: Callable[[str], str]) -> Settings:
 def full_path(name: str, path: Path) -> str:
     """A path of the file, resolved against its folder, with variables replaced; "" stays "".
 
+    Where there is a file or folder of just that name, its signs are no variables.
+
     Raises:
         SettingsError: When a variable is not set.
     """
+    if "$" in name and (path.parent / name).exists():
+        return str(path.parent / name)
     filled = os.path.expandvars(name)
     if "$" in filled:
         raise SettingsError(f"{path}: {name} names a variable that is not set: export it")
