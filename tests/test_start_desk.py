@@ -22,6 +22,7 @@ from animator.start.wishes import (
     Delete,
     Demo,
     Drop,
+    Look,
     Record,
     Report,
     Take,
@@ -30,6 +31,7 @@ from animator.start.wishes import (
     Wish,
     Work,
 )
+from tritrack.machine_cameras.camera_list import FoundCamera
 from tritrack.starting import start_lists
 from tritrack.starting.job_plan import Dropped, Known, Plan, kept_calibration, planned
 from tritrack.starting.job_queue import Job, JobQueue
@@ -328,4 +330,28 @@ def test_a_folder_that_fails_is_told_and_the_page_goes_on(
     turned(desk, page)
     assert "Input/output error" in page.told[0]
     monkeypatch.undo()
+    desk.close()
+
+
+def test_cameras_are_not_open_beside_a_recording_that_waited_for_its_turn(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A device can be opened by one program alone."""
+    monkeypatch.setattr(start_lists, "cameras_of", lambda _: [FoundCamera("v9", "a", "b", 99)])
+    queue, look = JobQueue([sys.executable, "-c", "input()"]), Look(on=True)
+    desk, page = StartDesk(Given(tmp_path / "runs"), queue), Page(look)
+    before = queue.add(Plan("waits", ("track",)))
+    waits = queue.add(Plan("record", ("record", "--out")))
+    turned(desk, page)
+    assert (desk._lists.shows, page.told) == (True, [])
+    queue.cancel(before.number)
+
+    def is_begun() -> bool:
+        return turned(desk, Page()) and waits.state == "running" and not desk._lists.shows
+
+    assert until(is_begun)
+    again = Page(look)
+    turned(desk, again)
+    assert again.told == ["a live run or a recording has the cameras: end it first"]
+    assert not desk._lists.shows
     desk.close()

@@ -149,6 +149,12 @@ class JobQueue:
         runs = {plan.run for plan in going if plan.run}
         return frozenset(runs | {plan.records.name for plan in going if plan.records is not None})
 
+    @property
+    def holds_cameras(self) -> bool:
+        """Whether a live run or a recording goes on, which alone may hold its cameras."""
+        going = [job.plan for job in self._jobs if job.state == "running"]
+        return any(plan.arguments[:1] in (("live",), ("record",)) for plan in going)
+
     def uses(self, path: Path) -> bool:
         """Whether a job that is not over needs a path or something in it, or writes a run there."""
         going = [job.plan for job in self._jobs if not job.is_over]

@@ -157,6 +157,8 @@ class StartDesk:
         elif isinstance(wish, Cancel):
             self._queue.cancel(wish.job)
         elif isinstance(wish, Look):
+            if wish.on and self._queue.holds_cameras and self._lists.has_devices:
+                raise PlanError("a live run or a recording has the cameras: end it first")
             self._lists.look(wish.on)
         elif isinstance(wish, Watch):
             refuse_cameras(wish.cameras, self._lists.sources, least=0)
@@ -271,6 +273,8 @@ class StartDesk:
 
     def _show_jobs(self, page: StartPage) -> None:
         ended = self._queue.turn()
+        if self._queue.holds_cameras and self._lists.has_devices and self._lists.shows:
+            self._lists.look(False)  # one that waited begins, and its cameras may be open
         for job in ended:
             if job.plan.report is not None and job.state == "done":
                 job.plan.report.write_text("\n".join(job.progress.lines) + "\n")

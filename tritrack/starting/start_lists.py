@@ -7,7 +7,7 @@ from typing import Final
 
 from animator.start.start_page import StartPage
 from common.video.decoding import Decoder
-from common.video.pictures import Source
+from common.video.pictures import Source, is_recorded
 from runtime.store.past_run import PastRunError
 from tritrack.machine_cameras.camera_list import FoundCamera, cameras_of
 from tritrack.machine_cameras.camera_previews import Previews
@@ -45,6 +45,16 @@ class StartLists:
     def sources(self) -> dict[str, Source]:
         """Of the cameras, by their ids."""
         return {each.camera: each.source for each in self._cameras}
+
+    @property
+    def shows(self) -> bool:
+        """Whether the cameras are open for their pictures alone, not for the board."""
+        return self._previews.on and not self._previews.watching
+
+    @property
+    def has_devices(self) -> bool:
+        """Whether some are no files: those can be opened by one program alone."""
+        return not all(is_recorded(each.source) for each in self._cameras)
 
     def camera_jpeg(self, camera: str) -> bytes | None:
         """The newest picture of a camera; from any thread."""
