@@ -159,3 +159,14 @@ def test_closing_ends_what_runs(queue: JobQueue) -> None:
     assert job.process is not None
     assert job.process.poll() is not None
     assert time.monotonic() - before_s < 10.0
+
+
+def test_a_recording_is_not_used_by_a_run_of_its_name(tmp_path: Path) -> None:
+    """The run has the videos as its own; the recording may be deleted meanwhile."""
+    queue, recording = JobQueue(), tmp_path / ".recorded" / "walk"
+    queue.add(Plan("walk", ("track", str(tmp_path / ".clips" / "walk")), run="walk"))
+    assert queue.uses(tmp_path / "walk")
+    assert queue.uses(tmp_path / ".clips" / "walk")
+    assert not queue.uses(recording)
+    queue.add(Plan("record", ("record", "--out", str(recording)), records=recording))
+    assert queue.uses(recording)

@@ -13,6 +13,7 @@ from urllib.parse import quote
 
 from animator.start.sections import Jobs, ShownJob, State
 from runtime.terminal import PROGRESS
+from tritrack.recording_cameras.recorded_clips import RECORDED
 from tritrack.starting.job_plan import Kind, Plan, PlanError
 from tritrack.starting.job_progress import Progress, step, words
 from tritrack.stopping import STARTER, STARTER_PIPE
@@ -160,7 +161,8 @@ class JobQueue:
         going = [job.plan for job in self._jobs if not job.is_over]
         words = [Path(word) for plan in going for word in plan.arguments]
         words += [path for plan in going for path in plan.needs]
-        written = any(plan.run and plan.run == path.name for plan in going)
+        is_recording = path.parent.name == RECORDED  # its name is no run's
+        written = any(plan.run and plan.run == path.name for plan in going) and not is_recording
         return written or any(word == path or path in word.parents for word in words)
 
     def videos_of(self, number: int) -> tuple[tuple[Path, str], ...]:
