@@ -116,8 +116,8 @@ def _followed(state: State, now: Sighting) -> tuple[State, Body, Guide]:
 
 def _sized(state: State, body: Known, now: Sighting) -> tuple[State, Known]:
     """The body in the size that landmarks show; the pose of a body of another size is forgotten."""
-    by_floor, person = state.alone and state.settings.people == "all", state.person
-    sized = landmark_stature.step(body, *now.two, by_floor=by_floor)
+    sized = landmark_stature.step(body, *now.two)
+    person = state.person
     if sized.bdp != body.bdp and isinstance(person, Following):
         found = person.found._replace(memory=None, landmarks=None, alone=None)
         state = state._replace(person=person._replace(found=found))

@@ -115,7 +115,7 @@ def test_a_depth_that_stays_elsewhere_is_believed_within_a_second() -> None:
     memory = known(CAMERA, STANDING_M)
     for _ in range(15):
         memory, _ = step(memory, sight_of(None), away(0.6))
-    assert memory.depth_m - DEPTH_M == pytest.approx(0.6, abs=0.12)
+    assert memory.depth_m - DEPTH_M == pytest.approx(0.6, abs=0.1)
 
 
 @pytest.mark.parametrize("on_floor", [True, False])
@@ -133,15 +133,3 @@ def test_who_comes_nearer_is_followed_at_their_speed() -> None:
     for n in range(15):
         memory, _ = step(memory, sight_of(None), away(-0.1 * n))
     assert memory.depth_m - DEPTH_M == pytest.approx(-1.4, abs=0.06)
-
-
-def test_what_feet_showed_of_a_size_that_is_always_wrong_lasts_while_they_are_hidden() -> None:
-    """A tall person is proposed too near: half a second without feet does not draw them there."""
-    memory, _ = step(None, sight_of(landmarks(STANDING_M)), away(-0.5))
-    for _ in range(30):
-        memory, _ = step(memory, sight_of(landmarks(STANDING_M)), away(-0.5))
-    assert memory.depth_m - DEPTH_M == pytest.approx(0.0, abs=0.15)
-    assert -0.5 < memory.state[2] < -0.25
-    for _ in range(8):
-        memory, _ = step(memory, sight_of(None), away(-0.5))
-    assert memory.depth_m - DEPTH_M == pytest.approx(0.0, abs=0.25)

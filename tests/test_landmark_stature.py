@@ -11,13 +11,7 @@ from common.body.kinematics import joints
 from common.body.observation import Landmarks, Observation
 from common.body.proportions import body_vector, stature, thesis_bdp
 from integrator.measuring.known_body import Known, Measured, Sample, Unmeasured
-from integrator.measuring.landmark_stature import (
-    FEWEST,
-    LATEST,
-    by_floor_m,
-    by_segments_m,
-    step,
-)
+from integrator.measuring.landmark_stature import FEWEST, by_floor_m, by_segments_m, step
 
 
 def shown(view: int, tall_m: float = 1.75, sure: float = 0.9) -> Observation:
@@ -30,9 +24,9 @@ def landmarks(view: int, tall_m: float = 1.75) -> Landmarks:
     return found
 
 
-def after(body: Known, instants: int, *views: Observation | None, by_floor: bool = False) -> Known:
+def after(body: Known, instants: int, *views: Observation | None) -> Known:
     for _ in range(instants):
-        body = step(body, RIG, (views[0], views[1]), by_floor=by_floor)
+        body = step(body, RIG, (views[0], views[1]))
     return body
 
 
@@ -116,24 +110,3 @@ def test_one_view_counts_alone_where_the_other_is_unsure_and_not_where_they_cont
     )
     far = seen(1, np.asarray(joints(body_vector(thesis_bdp(1.75)), standing((2.0, 3.0)))))
     assert after(small, 20, shown(0), far).bdp == small.bdp
-
-
-def on_floor(tall_m: float) -> Observation:
-    """View 1 of a person of that stature whose feet are on the floor."""
-    pose = standing()
-    pose[POSE_INDEX["y"]] *= tall_m / 1.75
-    return seen(0, np.asarray(joints(body_vector(thesis_bdp(tall_m)), pose)))
-
-
-@pytest.mark.parametrize("tall_m", [1.62, 1.9])
-def test_a_size_that_tells_the_depth_is_right_within_some_instants(tall_m: float) -> None:
-    usual, own = Unmeasured(thesis_bdp(1.75)), on_floor(tall_m)
-    assert after(usual, 40, own, None).bdp == usual.bdp
-    sized = after(usual, FEWEST, own, None, by_floor=True)
-    assert stature(sized.bdp) == pytest.approx(tall_m, rel=0.03)
-
-
-def test_a_size_that_was_found_falls_no_more_where_the_person_crouches() -> None:
-    sized = after(Unmeasured(thesis_bdp(1.75)), LATEST, on_floor(1.9), None, by_floor=True)
-    crouched = after(sized, 2 * LATEST, on_floor(1.6), None, by_floor=True)
-    assert crouched.bdp == sized.bdp

@@ -27,8 +27,6 @@ LATEST, FEWEST = 30, 8
 AWAY: Final = 0.12
 """Logarithm of the ratio of that stature to the body's above which the body is scaled: it is 0.05
 at most for four performers (docs/measurements.md)."""
-CLOSE: Final = 0.02
-"""The same where the size alone tells the depth: 0.1 m of it at 5 m."""
 DOWNWARD: Final = 0.05
 """Fall of a sight line, of its length, from which on it determines a place on the floor."""
 
@@ -36,7 +34,7 @@ _SEGMENTS: Final = np.flatnonzero(prior.UPRIGHT[prior.LENGTH_OF])
 _HEAD: Final = JOINT_NAMES.index("head_top")
 
 
-def step(body: Known, rig: Rig, seen: TwoSeen, *, by_floor: bool = False) -> Known:
+def step(body: Known, rig: Rig, seen: TwoSeen) -> Known:
     """The body after one instant, scaled where the landmarks of many contradict its size.
 
     The silhouettes of the first instant may be of something else. A body that the user gave stays.
@@ -45,26 +43,23 @@ def step(body: Known, rig: Rig, seen: TwoSeen, *, by_floor: bool = False) -> Kno
         body: The body so far.
         rig: Two cameras without distortion.
         seen: The person in both; one view alone shows a least stature.
-        by_floor: There is one view alone, whose floor is known, and others may hide a part of the
-            silhouette: the size tells the depth, and is to be right.
     """
     if isinstance(body, Measured) and not body.measures:
         return body
     shown = [None if person is None else person.landmarks for person in seen]
-    is_new = by_floor and len(body.statures_m) < LATEST
-    found_m = _stature_m(rig, shown, 0.0 if is_new else stature(body.bdp))
+    found_m = _stature_m(rig, shown, stature(body.bdp))
     if found_m is None:
         return body
     body = body._replace(statures_m=(*body.statures_m, found_m)[-LATEST:])
     typical_m = float(np.median(body.statures_m))
     scale = typical_m / stature(body.bdp)
-    if len(body.statures_m) < FEWEST or abs(math.log(scale)) <= (CLOSE if by_floor else AWAY):
+    if len(body.statures_m) < FEWEST or abs(math.log(scale)) <= AWAY:
         return body
     return body._replace(bdp=body.bdp.scaled(scale), samples=(), unsampled=0)
 
 
-def _stature_m(rig: Rig, shown: list[Landmarks | None], least_m: float) -> float | None:
-    """Stature by an instant's landmarks, of a view alone a least one at least, as who crouches is
+def _stature_m(rig: Rig, shown: list[Landmarks | None], known_m: float) -> float | None:
+    """Stature by an instant's landmarks, of a view alone the known one at least, as who crouches is
     not small; None where they show none."""
     first, second = shown
     found_m = None
@@ -73,10 +68,10 @@ def _stature_m(rig: Rig, shown: list[Landmarks | None], least_m: float) -> float
     if found_m is None:
         views = zip(shown, rig.cameras, strict=True)
         each_m = [by_floor_m(each, camera) for each, camera in views if each is not None]
-        own_m = [each for each in each_m if each is not None]
-        if len(own_m) != 1:  # two views contradict each other
+        least_m = [each for each in each_m if each is not None]
+        if len(least_m) != 1:  # two views contradict each other
             return None
-        found_m = max(own_m[0], least_m)
+        found_m = max(least_m[0], known_m)
     low, high = STATURES_M
     return found_m if low <= found_m <= high else None
 

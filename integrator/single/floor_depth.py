@@ -1,6 +1,5 @@
 """Depth of a whole body in a single view: by feet on the floor, and no faster than people walk."""
 
-import math
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -14,11 +13,6 @@ from integrator.single.sight import Hypothesis, Sight
 
 PROPOSED_M: Final = 0.16
 """Standard deviation of the depth of a body whose size in the picture tells it."""
-LASTS: Final = 0.5
-"""Share of its variance that is the same in every instant of a person: by their build, their
-clothes, who hides them."""
-LASTS_S: Final = 4.0
-"""Time in which that share is another, seconds."""
 FEET_M: Final = 0.1
 """Standard deviation of the depth of the middle of two feet side by side on the floor."""
 LIFTED: Final = 0.3
@@ -40,9 +34,6 @@ SURPRISE: Final = 2.0
 """Standard deviations from what is foreseen beyond which both are believed less."""
 ANKLES: Final = tuple(JOINT_NAMES.index(name) for name in ("l_ankle", "r_ankle"))
 PELVIS: Final = JOINT_NAMES.index("pelvis")
-BY_SIZE: Final = np.array((1.0, 0.0, 1.0))
-BY_FEET: Final = np.array((1.0, 0.0, 0.0))
-"""Which of the memory's values add up to what a person's size, and feet, tell."""
 PLACE: Final = [POSE_INDEX[name] for name in ("x", "y", "z")]
 
 
@@ -57,10 +48,9 @@ class Memory(NamedTuple):
     """The depth after an instant."""
 
     state: Vector
-    """(3,) the depth, metres, its speed, metres a second, and by how much farther the person's size
-    says that they are, metres."""
+    """(2,) the depth, metres, and its speed, metres a second."""
     P: NDArray[np.float64]
-    """(3, 3) their covariance."""
+    """(2, 2) their covariance."""
 
     @property
     def depth_m(self) -> float:
@@ -87,13 +77,10 @@ def step(memory: Memory | None, sight: Sight, body: Hypothesis) -> tuple[Memory,
     camera = undistorted_camera(sight.camera)
     proposed_m = _depth_m(camera, body.joints_m[PELVIS])
     feet = feet_depth(camera, sight.person.landmarks, ANKLE * sight.stature_m)
-    if memory is None:
-        after = _begun(Depth(proposed_m, (1.0 - LASTS) * PROPOSED_M**2), by_size=True)
-    else:
-        told = Depth(proposed_m, (1.0 - LASTS) * PROPOSED_M**2)
-        after = _with(_foreseen(memory, sight.dt_s), told, BY_SIZE)
-    if feet is not None:
-        after = _with(after, feet, BY_FEET)
+    shown = [Depth(proposed_m, PROPOSED_M**2)] + ([] if feet is None else [feet])
+    after = _begun(shown.pop(0)) if memory is None else _foreseen(memory, sight.dt_s)
+    for each in shown:
+        after = _with(after, each)
     off_m = body.joints_m[PELVIS] - centre(camera)
     by_m = off_m * (after.depth_m / proposed_m - 1.0)
     pose = body.pose.copy()
@@ -123,41 +110,26 @@ def feet_depth(camera: Camera, shown: Landmarks | None, ankle_m: float) -> Depth
     return Depth(float(np.mean(depths_m)), FEET_M**2 + (LIFTED * apart_m) ** 2)
 
 
-def _begun(first: Depth, *, by_size: bool = False) -> Memory:
-    """The memory at the first instant, of a depth that two views or the person's size tell."""
-    lasting_m2 = LASTS * PROPOSED_M**2
-    P = np.diag((first.variance_m2, WALK_M_S**2, lasting_m2))
-    if by_size:
-        P[0, 0] += lasting_m2
-        P[0, 2] = P[2, 0] = -lasting_m2
-    return Memory(np.array((first.depth_m, 0.0, 0.0)), P)
+def _begun(first: Depth) -> Memory:
+    return Memory(np.array((first.depth_m, 0.0)), np.diag((first.variance_m2, WALK_M_S**2)))
 
 
 def _foreseen(memory: Memory, dt_s: float) -> Memory:
     """The depth after some time at its speed."""
-    kept = math.exp(-dt_s / LASTS_S)
-    onward = np.array(((1.0, dt_s, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, kept)))
-    noise = STARTS_M_S2 * np.array((0.5 * dt_s**2, dt_s, 0.0))
+    onward = np.array(((1.0, dt_s), (0.0, 1.0)))
+    noise = STARTS_M_S2 * np.array((0.5 * dt_s**2, dt_s))
     P = onward @ memory.P @ onward.T + np.outer(noise, noise)
-    P[2, 2] += (1.0 - kept**2) * LASTS * PROPOSED_M**2
     return Memory(onward @ memory.state, P)
 
 
-def _with(memory: Memory, shown: Depth, by: Vector) -> Memory:
-    """The depth with what an instant shows; one far from what is foreseen makes both uncertain.
-
-    Args:
-        memory: As foreseen.
-        shown: A sum of the state's.
-        by: BY_SIZE or BY_FEET.
-    """
-    off_m = shown.depth_m - float(by @ memory.state)
-    both_m2 = float(by @ memory.P @ by) + shown.variance_m2
+def _with(memory: Memory, shown: Depth) -> Memory:
+    """The depth with what an instant shows; one far from what is foreseen makes both uncertain."""
+    off_m, both_m2 = shown.depth_m - memory.depth_m, memory.P[0, 0] + shown.variance_m2
     far_m2 = max(0.0, (off_m / SURPRISE) ** 2 - both_m2)
     P = memory.P.copy()
     P[0, 0] += 0.5 * far_m2
-    gain = P @ by / (both_m2 + far_m2)
-    return Memory(memory.state + gain * off_m, P - np.outer(gain, by @ P))
+    gain = P[:, 0] / (both_m2 + far_m2)
+    return Memory(memory.state + gain * off_m, P - np.outer(gain, P[0]))
 
 
 def _depth_m(camera: Camera, place_m: Vector) -> float:
