@@ -25,8 +25,8 @@ KEPT: Final = 3
 ADMINISTRATOR: Final = 0
 """User ids whose compiled code is loaded without question: root, who may have installed the
 package, this user, and the owner of the sources."""
-ALL: Final = "all-"
-"""How names of marker files begin."""
+COMPILED: Final = ".nbc"
+"""Suffix of files of compiled code."""
 NAME: Final = re.compile(r"tritrack-[0-9a-f]{32}")
 
 log = logging.getLogger(__name__)
@@ -52,12 +52,12 @@ def compiled_folder() -> Path:
 
 def mark_of_all() -> Path:
     """A marker file: it exists once all that commands run by default was compiled."""
-    return compiled_folder() / f"{ALL}{digest_of(ROOT)}"
+    return compiled_folder() / f"all-{digest_of(ROOT)}"
 
 
 def is_new() -> bool:
-    """Whether no state of our sources was compiled whole there yet."""
-    return not any(compiled_folder().glob(f"{ALL}*"))
+    """Whether nothing was compiled there yet, of whatever state of our sources."""
+    return not any(compiled_folder().glob(f"*{COMPILED}"))
 
 
 def parents(root: Path, environ: Mapping[str, str]) -> Iterator[Path]:

@@ -14,7 +14,7 @@ from numba.core.compiler import CompileResult
 from numba.core.serialize import dumps
 
 from common.atomic_file import replacing
-from common.cache_folder import compiled_folder, used_s
+from common.cache_folder import COMPILED, compiled_folder, used_s
 from common.packages import PACKAGES
 from common.source_digest import module_digest
 
@@ -67,14 +67,14 @@ class KeptOverloads(NullCache):
             log.info("not kept: %s", error)
 
     def _path(self, key: Any) -> Path:
-        return compiled_folder() / f"{self._stem(key)}-{self._sources}.nbc"
+        return compiled_folder() / f"{self._stem(key)}-{self._sources}{COMPILED}"
 
     def _stem(self, key: Any) -> str:
         return f"{self._name}-{hashlib.sha256(repr(key).encode()).hexdigest()[:16]}"
 
     def _prune(self, key: Any) -> None:
         """Remove the code of older sources for a signature, all but the newest KEPT."""
-        of_all = compiled_folder().glob(f"{glob.escape(self._stem(key))}-*.nbc")
+        of_all = compiled_folder().glob(f"{glob.escape(self._stem(key))}-*{COMPILED}")
         for path in sorted(of_all, key=used_s, reverse=True)[KEPT:]:
             path.unlink(missing_ok=True)
 

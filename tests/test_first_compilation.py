@@ -9,6 +9,7 @@ import pytest
 
 from common import cache_folder
 from common.platform.platform import Job
+from integrator import integrator_warmup
 from runtime.warming import first_compilation
 
 
@@ -29,27 +30,67 @@ def test_what_is_run_first_is_a_program_of_ours_which_compiles_in_silence(
     assert capfd.readouterr() == ("", "")
 
 
-def test_a_recorded_clip_waits_for_it_only_where_nothing_was_ever_compiled(
+class Launcher:
+    """Notes the jobs of its workers, and what becomes of these."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, folder: Path) -> None:
+        self.done: list[Any] = []
+        monkeypatch.setattr(cache_folder, "compiled_folder", lambda: folder)
+        monkeypatch.setattr(first_compilation, "platform", lambda: self)
+
+    def start(self, job: Job) -> Any:
+        self.done.append(job.main)
+        return SimpleNamespace(worker=self)
+
+    def join(self) -> None:
+        self.done.append("waited")
+
+    def kill(self) -> None:
+        self.done.append("killed")
+
+
+def test_a_live_run_waits_until_all_is_compiled(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A live run waits after each change of the sources too."""
-    begun: list[Any] = []
-
-    def start(job: Job) -> Any:
-        begun.append(job.main)
-        return SimpleNamespace(worker=SimpleNamespace(join=lambda: begun.append("waited")))
-
-    monkeypatch.setattr(cache_folder, "compiled_folder", lambda: tmp_path)
-    launcher = SimpleNamespace(start=start)
-    monkeypatch.setattr(first_compilation, "platform", lambda: launcher)
-    whole = [first_compilation.compile_all, "waited"]
-    first_compilation.compile_on_a_new_machine()
-    assert begun == whole
-    (tmp_path / "all-an older state").touch()
-    first_compilation.compile_on_a_new_machine()
-    assert begun == whole
+    launcher = Launcher(monkeypatch, tmp_path)
     first_compilation.compile_first()
-    assert begun == 2 * whole
+    assert launcher.done == [first_compilation.compile_all, "waited"]
     cache_folder.mark_of_all().touch()
     first_compilation.compile_first()
-    assert begun == 2 * whole
+    assert len(launcher.done) == 2
+
+
+def test_a_recorded_clip_is_tracked_beside_it_where_nothing_was_ever_compiled(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What failed ends it too."""
+    launcher = Launcher(monkeypatch, tmp_path)
+    job = first_compilation.compile_integrator
+
+    def fail() -> None:
+        with first_compilation.compiling_beside():
+            assert launcher.done == [job]
+            raise KeyError(job)
+
+    with pytest.raises(KeyError):
+        fail()
+    assert launcher.done == [job, "killed", "waited"]
+    (tmp_path / "of an older state.nbc").touch()
+    with first_compilation.compiling_beside():
+        assert len(launcher.done) == 3
+
+
+def test_what_an_integrator_executes_is_compiled_in_silence(
+    monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    sizes: list[Any] = []
+
+    def warm_up(_settings: Any, size: Any) -> None:
+        sizes.append(size)
+        print("a library speaks")
+
+    monkeypatch.setattr(integrator_warmup, "warm_up", warm_up)
+    words: Any = None
+    first_compilation.compile_integrator(words)
+    assert sizes == [first_compilation.SIZE]
+    assert capfd.readouterr() == ("", "")

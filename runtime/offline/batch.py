@@ -29,7 +29,7 @@ from runtime.terminal import Tell, bar, by_share, complain, say, warn
 from runtime.unfinished.resuming import Wanted, done_before, resumable
 from runtime.unfinished.unfinished_run import CannotResume
 from runtime.unfinished.work import Course, Kept
-from runtime.warming.first_compilation import compile_on_a_new_machine
+from runtime.warming.first_compilation import compiling_beside
 
 KEPT_AS_IT_IS: Final = (CannotResume, OtherRun)
 """An error that keeps one clip's run folder from being written."""
@@ -82,7 +82,7 @@ def track_all(paths: Sequence[Path], out: Path, given: Asked, console: Console) 
     if given.record:
         refuse_without_library()
     done: Facts = {}
-    with Decoders() as decoders, bar(console) as progress:
+    with compiling_beside(), Decoders() as decoders, bar(console) as progress:
         for (name, path), tell in by_share(progress, [*runs.items()], "tracking"):
             try:
                 own = config_file.load(path)
@@ -115,7 +115,6 @@ def _tracked(
     with resumable(wanted, console) as (work, made_of):
         heard = work.messages("heard") if given.record else None
         course, watch = Course(tell, work), None if heard is None else _recorder(heard)
-        compile_on_a_new_machine()
         tracked = track_clip(settings, decoders, given.views, watch=watch, course=course)
         for warning in tracked.facts["warnings"]:
             warn(console, f"{folder.name}: {warning}")

@@ -3,7 +3,6 @@
 import io
 from contextlib import redirect_stdout, suppress
 from multiprocessing.connection import Connection
-from typing import Final
 
 import cv2
 import numpy as np
@@ -13,12 +12,10 @@ from common.config.settings import Settings
 from common.method import METHODS
 from integrator.integrator_warmup import warm_up as warm_integrator
 from recognizer import __main__ as recognizer_process
+from runtime.warming.first_compilation import SIZE
 from viewer import track
 from viewer.background.background import learn
 from viewer.viewer_warmup import warm_up as warm_viewer
-
-SIZE: Final = (160, 120)
-"""Size of the synthetic pictures; the compiled code is valid for any."""
 
 
 def compile_parts(_words: Connection) -> None:

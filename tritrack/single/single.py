@@ -39,6 +39,7 @@ from runtime.unfinished.message_file import writing
 from runtime.unfinished.resuming import Begun, Wanted, done_before, resumable
 from runtime.unfinished.unfinished_run import CannotResume
 from runtime.unfinished.work import InMemory, Work
+from runtime.warming.first_compilation import compiling_beside
 from tritrack.single.animation_files import write_files
 from tritrack.single.ledger import facts_of, ledger
 from tritrack.single.mask_file import MaskFileError, MaskSequence, is_mask_file, read_masks
@@ -104,7 +105,7 @@ def single_all(
         RunError, VideoError: When the results cannot be written.
     """
     done: Facts = {}
-    with Decoder() as decoder, bar(console) as progress:
+    with compiling_beside(), Decoder() as decoder, bar(console) as progress:
         for path, begun in by_pass(progress, videos, PASSES):
             name = name_of(path)
             try:
