@@ -44,6 +44,7 @@ def test_a_turned_camera_is_found_and_turned_back(place: int) -> None:
     odd = odd_camera.odd_camera(rig, [SHOWN], ON_TIME)
     assert odd is not None
     assert odd.place == place
+    assert np.degrees(odd.turn[:2]) == pytest.approx([-1.0, 1.5], abs=0.5)  # roll is hardly shown
     assert odd.then_m < odd_camera.AMONG * odd.apart_m
     better = turned_back(rig, odd)
     assert off_deg(rig, RIG, place) == pytest.approx(math.hypot(1.0, 1.5), abs=0.01)

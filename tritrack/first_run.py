@@ -7,8 +7,6 @@ from typing import Final
 
 from common.cache_folder import mark_of_all
 
-SIZE: Final = (160, 120)
-"""Size of the synthetic pictures; the compiled code is valid for any."""
 MOTION_S: Final = 1.0
 """Length of what follows the opening posture: as long as any longer clip for what is compiled."""
 
@@ -47,6 +45,7 @@ def _run_all() -> None:
 def _track() -> None:
     from common.config.settings import Settings
     from runtime.offline.lockstep import Decoders, track_clip
+    from runtime.warming.first_compilation import SIZE
     from tritrack.demo import made_clip
 
     with tempfile.TemporaryDirectory(prefix="tritrack-first-") as folder, Decoders() as decoders:
