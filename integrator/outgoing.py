@@ -14,6 +14,7 @@ from common.bus.instant import Instant, Seen
 from common.bus.messages import Agreement, Body, Point, Views
 from common.npz_file import Facts
 from common.rig.camera import project
+from common.rig.upright import Upright
 from common.rig.upright_camera import as_filed
 from integrator.belief import status_of
 from integrator.landmarks.extremity_sight import seen_extremities
@@ -44,7 +45,7 @@ def body_of(
     status, posed = status_of(person, state.period_s), {}
     if status != "lost":
         posed = {
-            "joints_m": _points(places_m),
+            "joints_m": points(places_m),
             "joints_px": _filed(state, pixels),
             "pose": tuple(pose.tolist()),
             "angles_raw_deg": tuple(person.pose[list(ANGLES_IN_POSE)].tolist()),
@@ -80,12 +81,12 @@ def predicted(state: State, lost: Body, last: Body, by_m: Vector) -> Body:
     return msgspec.structs.replace(
         lost,
         status="predicted",
-        joints_m=_points(places_m),
+        joints_m=points(places_m),
         joints_px=_filed(state, [project(camera, places_m) for camera in cameras]),
         pose=tuple(pose.tolist()),
         angles_raw_deg=last.angles_raw_deg,
         confidence=(0.0,) * len(places_m),
-        extremities_m=_points(ends_m),
+        extremities_m=points(ends_m),
         extremities_px=_filed(state, [project(camera, ends_m) for camera in cameras]),
         extremities_confidence=(0.0,) * len(ends_m),
     )
@@ -133,7 +134,7 @@ def _extremities(
         ends_m, measured = seen_extremities(ends_m, now.rig, now.seen, stature_m)
     ends_px = [project(camera, ends_m) for camera in now.filed_rig.cameras]
     return {
-        "extremities_m": _points(ends_m),
+        "extremities_m": points(ends_m),
         "extremities_px": _filed(state, ends_px),
         "extremities_confidence": tuple((measured * believed).tolist()),
     }
@@ -178,15 +179,19 @@ def _views(seen: Seen) -> Views:
     return "+".join(numbers) or "none"
 
 
-def _points(places_m: Vector) -> tuple[Point, ...]:
+def points(places_m: Vector) -> tuple[Point, ...]:
+    """Places (n, 3) as a message has them."""
     return tuple((x, y, z) for x, y, z in places_m.tolist())
+
+
+def filed_pixels(pixels: NDArray[np.float64], upright: Upright | None) -> tuple[Pixel, ...]:
+    """Pixels (n, 2) of a view's upright picture as a message has them: in its file's picture at the
+    working size, -1 where a place is behind the camera."""
+    filed = as_filed(pixels, upright)
+    return tuple((u, v) for u, v in np.where(np.isnan(filed), -1.0, filed).tolist())
 
 
 def _filed(state: State, pixels: Sequence[NDArray[np.float64]]) -> tuple[tuple[Pixel, ...], ...]:
     """Places in each view, in its file's picture at the working size."""
     views = zip(pixels, state.uprights, strict=True)
-    return tuple(_pixels(as_filed(own, upright)) for own, upright in views)
-
-
-def _pixels(pixels: NDArray[np.float64]) -> tuple[Pixel, ...]:
-    return tuple((u, v) for u, v in np.where(np.isnan(pixels), -1.0, pixels).tolist())
+    return tuple(filed_pixels(own, upright) for own, upright in views)

@@ -293,7 +293,7 @@ def test_what_else_is_told_of_an_instant_is_what_the_state_knows(
     assert guide_of(state._replace(motion=motion), person, BOTH, False).moves == (False, True)
     empty = outgoing.no_person(known, Instant((report(1, NOBODY), None)))
     assert empty.moved == (2,)
-    behind = outgoing._pixels(np.array([[np.nan, np.nan], [3.0, 4.0]]))
+    behind = outgoing.filed_pixels(np.array([[np.nan, np.nan], [3.0, 4.0]]), None)
     assert behind == ((-1.0, -1.0), (3.0, 4.0))
 
 

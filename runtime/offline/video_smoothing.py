@@ -12,11 +12,11 @@ from common.body.body import JOINT_NAMES, Vector
 from common.body.extremities import extremities
 from common.body.observation import Pixel
 from common.body.proportions import stature
-from common.bus.messages import Body, Point
+from common.bus.messages import Body
 from common.notes.notes import Notes, held
 from common.rig.camera import Camera, Rig, centre, project
 from common.rig.upright import Upright, Uprights
-from common.rig.upright_camera import as_filed
+from integrator.outgoing import filed_pixels, points
 from integrator.single.rigid_limbs import with_lengths
 from runtime.unfinished.work import Kept
 
@@ -180,22 +180,14 @@ def _with(
     ends_m = _by_rule(body, joints_m) + off_rule_m
     return msgspec.structs.replace(
         body,
-        joints_m=_points(joints_m),
+        joints_m=points(joints_m),
         joints_px=_pixels(joints_m, views),
-        extremities_m=_points(ends_m),
+        extremities_m=points(ends_m),
         extremities_px=_pixels(ends_m, views),
     )
-
-
-def _points(places_m: NDArray[np.float64]) -> tuple[Point, ...]:
-    return tuple((x, y, z) for x, y, z in places_m.tolist())
 
 
 def _pixels(
     places_m: NDArray[np.float64], views: Sequence[tuple[Camera, Upright | None]]
 ) -> tuple[tuple[Pixel, ...], ...]:
-    pixels = (
-        np.nan_to_num(as_filed(project(camera, places_m), upright), nan=-1.0)
-        for camera, upright in views
-    )
-    return tuple(tuple((u, v) for u, v in one.tolist()) for one in pixels)
+    return tuple(filed_pixels(project(camera, places_m), upright) for camera, upright in views)
