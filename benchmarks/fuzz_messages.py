@@ -128,7 +128,8 @@ def heard(known: Honest, at: int, message: Message) -> None:
         forged = Instant(with_item(known.pairs[at].views, message.viewer - 1, message))
         after, _, _ = merge.step(known.integrator[at], forged)
         merge.step(after, known.pairs[min(at + 1, len(known.pairs) - 1)])
-        diagnostics.step(diagnostics.State(), complete[0])
+        person = diagnostics.Present(0, complete[0].detections, measured=False)
+        diagnostics.step(diagnostics.State(), complete[0], [person])
     elif isinstance(message, Body):
         judged, _ = recogniser.step(known.recogniser[at], message)
         recogniser.step(judged, message)

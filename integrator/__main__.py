@@ -104,7 +104,7 @@ def _merged(at: Merging, instant: Instant, bus: Bus, pace: Pace) -> tuple[Mergin
     for body in merged.bodies:
         bus.publish(body)
     pace.done(instant.newest.clock_s, time.monotonic())
-    noticed = diagnostics.step(at.noticed, instant)
+    noticed = diagnostics.step(at.noticed, instant, several.present(state, merged))
     return Merging(state, noticed=noticed, turn=turn), merged.of_first
 
 

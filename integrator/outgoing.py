@@ -1,6 +1,7 @@
 """Output of an instant: the body, for all."""
 
 from collections.abc import Sequence
+from typing import Final
 
 import msgspec
 import numpy as np
@@ -8,10 +9,10 @@ from numpy.typing import NDArray
 
 from common.body.body import ANGLES_IN_POSE, JOINT_NAMES, Vector
 from common.body.extremities import extremities
-from common.body.observation import Observation, Pixel
+from common.body.observation import Facing, Observation, Pixel
 from common.body.proportions import stature
 from common.bus.instant import Instant, Seen
-from common.bus.messages import Agreement, Body, Point, Views
+from common.bus.messages import Agreement, Body, Point, Status, Views
 from common.npz_file import Facts
 from common.rig.camera import project
 from common.rig.upright import Upright
@@ -20,6 +21,9 @@ from integrator.belief import status_of
 from integrator.landmarks.extremity_sight import seen_extremities
 from integrator.merge_state import State
 from integrator.person import Following, Sighting
+
+OUTSIDE: Final = "partly outside the picture: "
+"""Begin of the advice to a person whom the picture cuts off."""
 
 
 def body_of(
@@ -62,6 +66,7 @@ def body_of(
         matches=sum(_matches(seen) for seen in now.instant.detections if seen is not None),
         lifting=None if person.found.alone is None else person.found.alone.lifting,
         agreement=told,
+        advice=advice_of(now.instant.detections, state.facing, status),
     )
 
 
@@ -90,6 +95,32 @@ def predicted(state: State, lost: Body, last: Body, by_m: Vector) -> Body:
         extremities_px=_filed(state, [project(camera, ends_m) for camera in cameras]),
         extremities_confidence=(0.0,) * len(ends_m),
     )
+
+
+def advice_of(seen: Seen, facing: tuple[Facing, ...], status: Status) -> tuple[str, ...]:
+    """For each camera, what a person can do; empty: nothing for any.
+
+    Whoever is partly outside a picture is asked back into it. What is wrong with the opening
+    posture matters while it is measured, and before the camera that sees the facade.
+
+    Args:
+        seen: The person in each view.
+        facing: The side of the body that each view sees.
+        status: Of the body.
+    """
+    advice = tuple(
+        "" if one is None else _advice(one, side, status)
+        for one, side in zip(seen, facing, strict=True)
+    )
+    return advice if any(advice) else ()
+
+
+def _advice(one: Observation, facing: Facing, status: Status) -> str:
+    if one.cut:
+        is_large = one.box.top <= 0 or one.box.bottom >= one.height - 1
+        return OUTSIDE + ("step back" if is_large else "step towards its middle")
+    shows_posture = facing == "facade" or one.measure is None
+    return one.refusal if status == "measuring" and shows_posture else ""
 
 
 def no_person(state: State, instant: Instant) -> Body:

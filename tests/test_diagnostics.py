@@ -1,5 +1,7 @@
 """What is odd about a performance, a line each."""
 
+from collections.abc import Collection
+
 import msgspec
 import numpy as np
 import pytest
@@ -14,7 +16,7 @@ from common.config.settings import Settings
 from common.method import DEFAULT
 from common.rig.camera import paper_rig
 from integrator import diagnostics, merge_state
-from integrator.diagnostics import DOUBTED
+from integrator.diagnostics import DOUBTED, Present
 from integrator.measuring.known_body import Measured, Unknown
 from integrator.person import Waiting
 from integrator.rig import same_person
@@ -26,10 +28,20 @@ def report(viewer: int, seen: bool = True, cut: bool = False) -> View:
     return staged(viewer, np.full((1, 8), seen), cut=cut)
 
 
-def noticed(*pairs: Instant) -> diagnostics.State:
+def noticed(*pairs: Instant, measured: bool = True) -> diagnostics.State:
+    """Of a run that follows one person."""
     state = diagnostics.State()
     for pair in pairs:
-        state = diagnostics.step(state, pair)
+        state = diagnostics.step(state, pair, [Present(0, pair.detections, measured)])
+    return state
+
+
+def of_several(*shown: dict[int, Instant], measured: Collection[int] = ()) -> diagnostics.State:
+    """Of a run that follows several, each instant by the number of the person whom it shows."""
+    state = diagnostics.State()
+    for each in shown:
+        people = [Present(n, own.detections, n in measured) for n, own in each.items()]
+        state = diagnostics.step(state, next(iter(each.values())), people)
     return state
 
 
@@ -54,8 +66,36 @@ def test_without_calibration_the_assumed_stature_is_named_from_the_start() -> No
 
 
 def test_proportions_that_were_not_measured_are_the_theses() -> None:
-    (told,) = diagnostics.warnings(noticed(Instant((report(1), None))), merged(measured=False))
+    seen = noticed(Instant((report(1), None)), measured=False)
+    (told,) = diagnostics.warnings(seen, merged(measured=False))
+    assert told.startswith("nobody took the opening posture")
     assert "thesis's proportions" in told
+
+
+def test_of_several_people_those_who_were_not_measured_are_named() -> None:
+    both = Instant((report(1), report(2)))
+    shown = of_several({1: both, 2: both, 4: both}, {2: both}, measured=[2])
+    (told,) = diagnostics.warnings(shown, merged(measured=False))
+    assert told.startswith("persons 1 and 4 did not take the opening posture")
+    all_of_them = of_several({1: both, 2: both}, measured=[1, 2])
+    assert diagnostics.warnings(all_of_them, merged(measured=False)) == []
+
+
+def test_of_several_people_each_who_is_cut_off_is_counted_by_viewer() -> None:
+    whole, cut = Instant((report(1), report(2))), Instant((report(1), report(2, cut=True)))
+    hidden = Instant((report(1), report(2, seen=False)))
+    shown = of_several({1: whole, 2: cut}, {1: cut, 2: cut}, {1: whole, 2: hidden}, measured=[1, 2])
+    assert diagnostics.warnings(shown, merged()) == [
+        "viewer 2 saw person 1 partly outside its picture in 1 of 3 frames, "
+        "person 2 partly outside its picture in 2 of 2 frames: what is outside is guessed"
+    ]
+
+
+def test_no_more_than_the_first_twenty_people_are_kept() -> None:
+    both = Instant((report(1), report(2)))
+    shown = of_several(*({n: both} for n in range(1, 40)), {3: both})
+    assert [one.number for one in shown.people] == list(range(1, 21))
+    assert shown.people[2].seen == (2, 2)
 
 
 def test_pictures_that_showed_no_scene_are_told_with_their_kind_and_time() -> None:
@@ -73,7 +113,8 @@ def test_pictures_that_showed_no_scene_are_told_with_their_kind_and_time() -> No
 
 
 def test_an_empty_room_misses_no_opening_posture() -> None:
-    nobody = noticed(Instant((report(1, seen=False), report(2, seen=False))))
+    empty = Instant((report(1, seen=False), report(2, seen=False)))
+    nobody = noticed(empty, measured=False)
     assert diagnostics.warnings(nobody, merged(measured=False)) == []
 
 

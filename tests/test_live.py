@@ -317,6 +317,26 @@ def test_each_of_several_people_has_a_colour_a_number_and_a_posture(
     assert looking.ask("document.documentElement.scrollWidth <= innerWidth"), "it is too wide"
 
 
+@pytest.mark.slow
+@AT_A_PHONE
+def test_each_person_is_advised_by_their_number_below_the_camera(
+    page: LivePage, looking: Looking
+) -> None:
+    whole = two_at(4)
+    assert whole.body is not None
+    (other,) = whole.others
+    first = msgspec.structs.replace(whole.body, advice=("raise both arms", ""))
+    second = msgspec.structs.replace(other.body, advice=("step back", ""))
+    others = (msgspec.structs.replace(other, body=second),)
+    page.show(msgspec.structs.replace(whole, body=first, others=others))
+    assert looking.until("document.body.dataset.frame === '4'")
+    hints = "[...document.querySelectorAll('#views .hint')].map((one) => one.textContent).join('|')"
+    assert looking.ask(hints) == "person 1: raise both arms; person 2: step back|"
+    label = "document.querySelector('#views canvas').getAttribute('aria-label')"
+    assert looking.ask(label).endswith(", person 1: raise both arms; person 2: step back")
+    assert looking.ask("document.documentElement.scrollWidth <= innerWidth"), "it is too wide"
+
+
 LISTED: Final = (
     "[...document.querySelectorAll('#everyone button')]"
     ".map((row) => [...row.children].map((each) => each.textContent).join(' ')).join('|')"

@@ -20,6 +20,7 @@ from staging import (
 )
 
 from calibration.gate import moved_cameras, rig_agreement, silhouette_motion
+from common.body.observation import Box, Measure
 from common.body.proportions import stature
 from common.bus.instant import Instant
 from common.bus.messages import Agreement, Guide, Lifting, View
@@ -326,6 +327,46 @@ def test_extremities_are_as_sure_as_they_are_seen_and_the_rig_is_believed(
     assert doubted.extremities_confidence == (0.0,) * 7
     assert np.array(doubted.extremities_m) == pytest.approx(ruled)
     assert len(asked) == 1
+
+
+@pytest.mark.parametrize(
+    ("box", "said"),
+    [
+        (Box(10, 40, 0, 90), "step back"),
+        (Box(10, 40, 20, 119), "step back"),
+        (Box(0, 40, 20, 90), "step towards its middle"),
+        (Box(0, 40, 20, 119), "step back"),
+    ],
+    ids=["head", "feet", "side", "corner"],
+)
+def test_a_person_partly_outside_a_picture_is_asked_back_into_it(box: Box, said: str) -> None:
+    """However they are followed, and by the camera that cuts them off alone."""
+    cut = changed(seen(1), cut=True, box=box).person
+    advice = outgoing.advice_of((cut, seen(2).person), ("facade", "flank"), "tracking")
+    assert advice == (f"partly outside the picture: {said}", "")
+
+
+def test_what_is_wrong_with_the_opening_posture_is_said_where_the_facade_is_seen() -> None:
+    """Before a camera at the side the same silhouette is the posture's flank; once the body is
+    measured nothing is wrong."""
+    lowered = "the arms are not stretched out to the sides"
+    side = Measure(height_px=80.0, centre_px=(70.0, 20.0), depth_px=9.0)
+    people = tuple(changed(seen(n), refusal=lowered, measure=side).person for n in (1, 2))
+    assert outgoing.advice_of(people, ("facade", "flank"), "measuring") == (lowered, "")
+    assert outgoing.advice_of(people, ("flank", "facade"), "measuring") == ("", lowered)
+    assert outgoing.advice_of(people, ("facade", "flank"), "tracking") == ()
+    touched = changed(seen(2), refusal="stand apart", measure=None).person
+    assert outgoing.advice_of((None, touched), ("facade", "flank"), "measuring") == (
+        "",
+        "stand apart",
+    )
+
+
+def test_a_body_carries_the_advice_to_its_person(state: State, person: Following) -> None:
+    assert told(state, person, BOTH).advice == ()
+    cut = changed(seen(1, cut=True), box=Box(0, 40, 20, 90))
+    advice = told(state, person, Instant((cut, seen(2)))).advice
+    assert advice == ("partly outside the picture: step towards its middle", "")
 
 
 def test_only_the_view_that_is_alone_and_cut_says_what_is_outside(state: State) -> None:

@@ -2,6 +2,7 @@
 
 import io
 
+import msgspec
 import pytest
 from rich.console import Console
 
@@ -88,6 +89,20 @@ def test_each_of_several_people_has_a_row_with_their_posture(seen: Seen) -> None
     at = next(n for n, line in enumerate(lines) if line.split()[:1] == ["person"])
     rows = [line.split() for line in lines[at + 2 :]]
     assert rows == [["1", "tracking", "walk", "toward"], ["2", "tracking"]]
+
+
+def test_each_person_has_the_advice_of_the_cameras_once(seen: Seen) -> None:
+    seen.news()
+    bodies = [told_of(person, 0.1, "")[0] for person in (1, 2)]
+    advice = ("step back", "", "step back")
+    with seen.screen.shown(["viewer 1"]) as show:
+        seen.heard.bodies.add([bodies[0], msgspec.structs.replace(bodies[1], advice=advice)])
+        show(seen.heard)
+    lines = seen.news()
+    at = next(n for n, line in enumerate(lines) if line.split()[:1] == ["person"])
+    first, second = (" ".join(line.split()) for line in lines[at + 2 :])
+    assert first == "1 tracking"
+    assert second == "2 tracking camera 1 and 3: step back"
 
 
 def test_a_run_that_follows_one_person_has_no_table_of_people(seen: Seen) -> None:

@@ -8,9 +8,10 @@ from staging import RIG
 from test_rig_agreement import turned
 
 from calibration.gate import rig_agreement
+from common.body.proportions import thesis_bdp
 from common.bus.control_messages import Command
 from common.bus.messages import Agreement, Body
-from integrator.measuring.known_body import Unmeasured
+from integrator.measuring.known_body import Measured, Unmeasured
 from integrator.people import recognition, several
 from integrator.people.lived_instant import KEPT_S
 from integrator.people.recognition import BORN_S, State
@@ -170,6 +171,35 @@ def test_a_command_to_measure_the_body_anew_is_for_everyone() -> None:
     assert [isinstance(body, Unmeasured) and not body.samples for body in bodies] == [True] * 2
     unknown = Command(what="front")
     assert several.commanded(crowd.state, unknown) == crowd.state
+
+
+def test_of_each_person_it_is_known_who_shows_them_and_whether_they_were_measured() -> None:
+    crowd = Crowd()
+    crowd.last(8, LEFT, RIGHT)
+    one, other = crowd.state.lives
+    known = Measured(thesis_bdp(1.7), (0.0, 1.0, 0.0))
+    person = msgspec.structs.replace(other.state.person, body=known)
+    lives = (one, other._replace(state=other.state._replace(person=person)))
+    hidden = of_all(8, (LEFT, shown(RIGHT_M, (-1, 1), BLUE)), 1)
+    state, merged = several.step(crowd.state._replace(lives=lives), hidden)
+    there = {own.number: own for own in several.present(state, merged)}
+    assert [own.measured for own in there.values()] == [False, True]
+    right = number_at(merged.bodies, RIGHT_M)
+    assert [one is not None for one in there[right].seen] == [False, True]
+    assert [one is not None for one in there[3 - right].seen] == [True, True]
+
+
+def test_of_a_run_that_follows_one_person_it_is_known_whether_they_were_measured() -> None:
+    crowd = Crowd(people=1)
+    for measured in (False, True):
+        if measured:
+            known = Measured(thesis_bdp(1.7), (0.0, 1.0, 0.0))
+            person = msgspec.structs.replace(crowd.state.room.person, body=known)
+            crowd.state = crowd.state._replace(room=crowd.state.room._replace(person=person))
+        crowd.state, merged = several.step(crowd.state, of_all(crowd.n, (LEFT,), 1))
+        crowd.n += 1
+        (own,) = several.present(crowd.state, merged)
+        assert (own.number, own.measured, all(own.seen)) == (0, measured, True)
 
 
 def test_bodies_come_by_number_whoever_was_exchanged() -> None:

@@ -1,18 +1,15 @@
 """What is shown of an instant, held against geometry and Bayes' rule."""
 
 import math
-from typing import Any
 
 import cv2
 import msgspec
 import numpy as np
 import pytest
 from show_page import BDP, RIG, pose_at, snapshot_at, two_at
-from staging import changed
 
 from animator.page.page_messages import ShownPosture
 from animator.page.shown import (
-    hint,
     outline_of,
     probabilities,
     shown_frame,
@@ -22,7 +19,7 @@ from animator.page.shown import (
 )
 from animator.scene import PEOPLE, Snapshot
 from common.body.body import ANGLES_IN_POSE
-from common.bus.messages import Agreement, Body, Performance, Picture, Posture, View
+from common.bus.messages import Agreement, Performance, Picture, Posture
 from common.raster.silhouette_report import mask_of, people_of, silhouette_view
 from common.rig.camera import centre
 from common.rig.upright import Upright
@@ -152,20 +149,30 @@ def test_the_room_has_each_camera_where_it_stands() -> None:
     assert [len(camera) for camera in room.cameras] == [5, 5]
 
 
-def test_the_person_is_told_what_is_in_the_way() -> None:
-    """The refusal of the opening posture matters while the body is being measured, not later."""
-    body = snapshot_at(0).body
-    assert isinstance(body, Body)
-    measuring = msgspec.structs.replace(body, status="measuring")
+def test_each_person_has_the_advice_of_each_camera() -> None:
+    whole = two_at(4)
+    (other,) = whole.others
+    advised = msgspec.structs.replace(other.body, advice=("", "step back"))
+    frame = shown_frame(
+        msgspec.structs.replace(whole, others=(msgspec.structs.replace(other, body=advised),)),
+        (),
+        RIG,
+        0,
+    )
+    assert frame is not None
+    assert [view.advice for view in frame.views if view] == ["", ""]
+    assert [view.advice for view in frame.others[0].views if view] == ["", "step back"]
 
-    def report(**told: Any) -> View:
-        return changed(silhouette_view(1, np.pad(np.ones((2, 2), np.bool_), 1)), **told)
 
-    refused = report(refusal="raise both arms sideways")
-    assert hint(measuring, refused) == "raise both arms sideways"
-    assert hint(body, refused) == ""
-    assert "partly outside" in hint(body, report(cut=True))
-    assert "frozen" in hint(body, msgspec.structs.replace(refused, fault="frozen"))
+def test_a_picture_that_shows_no_scene_is_named_by_its_fault() -> None:
+    whole = snapshot_at(4)
+    frozen = {
+        n: msgspec.structs.replace(report, fault="frozen") if n == 2 else report
+        for n, report in whole.reports.items()
+    }
+    frame = shown_frame(msgspec.structs.replace(whole, reports=frozen), (), RIG, 0)
+    assert frame is not None
+    assert [view.fault for view in frame.views if view] == ["", "the picture is frozen"]
 
 
 def test_each_view_is_told_its_own_numbers_as_exactly_as_they_are_drawn() -> None:

@@ -29,6 +29,8 @@ class ShownFit(msgspec.Struct, frozen=True, kw_only=True):
     score: float
     sees: str
     """The side of the body that it sees: facade or flank."""
+    advice: str
+    """What the person can do to be seen better by it or measured; "" where there is nothing."""
 
 
 class ShownView(ShownFit, frozen=True, kw_only=True):
@@ -37,8 +39,8 @@ class ShownView(ShownFit, frozen=True, kw_only=True):
     size: tuple[int, int]
     outline: list[Numbers]
     """Contours of the silhouette, each x, y, x, y and so on, pixels."""
-    hint: str
-    """Advice to the user."""
+    fault: str
+    """The fault of its picture; "" where there is none."""
     jpeg: bytes
     """The picture, where one may be shown."""
 

@@ -199,6 +199,7 @@ def _fit(report: View, body: Body, limbs: Sequence[NDArray[np.float64]]) -> Show
         joints=_rounded(np.concatenate(joints) if joints else (), 1),
         score=round(body.score[own], 3),
         sees=FACING_WORDS[body.facing[own]] if body.pose else "",
+        advice=body.advice[own] if body.advice else "",
     )
 
 
@@ -218,20 +219,9 @@ def _view(report: View, body: Body, fit: ShownFit, picture: Picture | None) -> S
         **msgspec.structs.asdict(fit),
         size=(report.width, report.height),
         outline=outline_of(report.people if body.person else report.people[:1]),
-        hint=hint(body, report),
+        fault=f"the picture is {report.fault}" if report.fault else "",
         jpeg=b"" if picture is None else picture.jpeg,
     )
-
-
-def hint(body: Body, report: View) -> str:
-    """Advice to the user about this camera's view."""
-    if report.fault:
-        return f"the picture is {report.fault}"
-    if report.person is None:
-        return ""
-    if report.person.cut:
-        return "the person is partly outside the picture"
-    return report.person.refusal if body.status == "measuring" else ""
 
 
 def _solids(standing: Figure, body: Body) -> list[Numbers]:

@@ -179,6 +179,9 @@ class Body(Moment, frozen=True, kw_only=True):
     """Cameras that were moved and whose new place the person has not confirmed yet."""
     made_of: tuple[int, ...] = (-1, -1)
     """The frame of each viewer's report that the body is made of; -1: none of that viewer."""
+    advice: tuple[str, ...] = ()
+    """For each camera, what this person can do to be seen better or to be measured; "" where there
+    is nothing. Empty: nothing for any."""
 
 
 class Performance(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

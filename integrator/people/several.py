@@ -5,7 +5,9 @@ from collections.abc import Sequence
 from common.bus.control_messages import Command
 from common.bus.instant import Instant
 from integrator import commands, merge, merge_state
+from integrator.diagnostics import Present
 from integrator.live_rig import rig_change
+from integrator.measuring.known_body import Measured
 from integrator.people import hidden_person, one_of_all
 from integrator.people.lived_instant import Merged, ended, lived, of_one
 from integrator.people.recognition import State, recognised, seen_of
@@ -49,6 +51,25 @@ def step(
     bodies, of_each = tuple(each[1] for each in shown), tuple(each[3] for each in shown)
     room = _agreed(first[0].state, [life.state for life, *_ in shown])
     return state._replace(room=room), Merged(bodies, first[2], first[3], of_each)
+
+
+def present(state: State, merged: Merged) -> list[Present]:
+    """The people of an instant, for what is noticed of them.
+
+    Args:
+        state: After it.
+        merged: What it gave.
+    """
+    lives = {life.number: life.state for life in state.lives}
+    each = zip(merged.bodies, merged.of_each or (merged.of_first,), strict=True)
+    return [
+        Present(
+            body.person,
+            own.detections,
+            isinstance(lives.get(body.person, state.room).person.body, Measured),
+        )
+        for body, own in each
+    ]
 
 
 def with_room(state: State, room: merge_state.State) -> State:

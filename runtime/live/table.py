@@ -52,7 +52,7 @@ def table_of(
 
 
 def table_of_people(bodies: Sequence[Body], postures: Iterable[Posture]) -> Table:
-    """Status and posture of each person of the newest instant.
+    """Status and posture of each person of the newest instant, and advice to them by camera.
 
     Args:
         bodies: The newest, of one instant or more, oldest first; at least one.
@@ -61,13 +61,22 @@ def table_of_people(bodies: Sequence[Body], postures: Iterable[Posture]) -> Tabl
     now = {body.person: body for body in bodies if body.captured_s == bodies[-1].captured_s}
     judged = {posture.person: posture for posture in postures}
     table = Table(box=SIMPLE_HEAD, padding=(0, 1, 0, 0))
-    for column in ("person", "status", "posture"):
-        table.add_column(column, no_wrap=True)
+    for column in ("person", "status", "posture", "advice"):
+        table.add_column(column, no_wrap=column != "advice")
     for person, body in sorted(now.items()):
         posture = judged.get(person)
         doing = "" if posture is None else posture.doing.replace("_", " ")
-        table.add_row(str(person), body.status, escape(doing))
+        table.add_row(str(person), body.status, escape(doing), escape(_advice(body)))
     return table
+
+
+def _advice(body: Body) -> str:
+    """What a person can do, with the cameras for which they are asked to; one advice once."""
+    cameras: dict[str, list[str]] = {}
+    for camera, advice in enumerate(body.advice, 1):
+        if advice:
+            cameras.setdefault(advice, []).append(str(camera))
+    return "; ".join(f"camera {' and '.join(own)}: {each}" for each, own in cameras.items())
 
 
 def _shown_name(process: str, cameras: Sequence[str]) -> str:

@@ -17,7 +17,7 @@ from common.video.frame_cache import FrameCache
 from integrator import diagnostics
 from integrator.live_rig.live_calibration import LiveCalibration, Looking
 from integrator.live_rig.rig_solver import SolverAtOnce
-from integrator.people import recognition
+from integrator.people import recognition, several
 from integrator.people.lived_instant import Merged
 from runtime.offline.frame_pairs import instants, share_of
 from runtime.offline.rig_check import Seen, Witness
@@ -168,10 +168,11 @@ def _stepped(
     spent = dict(going.spent)
     spent["viewers"] += middle - start
     spent["integrator"] += time.perf_counter() - middle
+    instant = instant_of(reports, len(state.room.frames))
     going = going._replace(
         viewers=viewers,
         integrator=state,
-        noticed=diagnostics.step(going.noticed, instant_of(reports, len(state.room.frames))),
+        noticed=diagnostics.step(going.noticed, instant, several.present(state, merged)),
         guide=merged.guide,
         starts=starts,
         spent=spent,

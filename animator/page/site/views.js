@@ -27,10 +27,9 @@ export class View {
   show(view, people, looked, greeting) {
     this.sees.textContent = looked?.sees ? `sees ${looked.sees}` : "";
     this.score.textContent = looked?.joints.length ? `fit ${looked.score.toFixed(2)}` : "";
-    this.hint.textContent = view ? view.hint : "nothing heard from it";
-    this.canvas.setAttribute("aria-label", view
-      ? `${this.name}: ${seen(people)}${view.hint ? `, ${view.hint}` : ""}`
-      : `${this.name}: nothing heard from it`);
+    const hint = view ? view.fault || advice(people) : "nothing heard from it";
+    this.hint.textContent = hint;
+    this.canvas.setAttribute("aria-label", `${this.name}: ${[...(view ? [seen(people)] : []), ...(hint ? [hint] : [])].join(", ")}`);
     if (view?.jpeg) this.load(view, people, greeting);
     else this.draw(view, people, greeting, null);
   }
@@ -70,6 +69,12 @@ export class View {
 function seen(people) {
   const there = people.filter(({ fit }) => fit?.joints.length);
   return there.map(({ person, fit }) => `${person ? `person ${person}` : "the person"}, ${fit.sees}`).join("; ") || "nobody";
+}
+
+/** What each person can do to be seen better or measured, several by their numbers. */
+function advice(people) {
+  const asked = people.filter(({ fit }) => fit?.advice);
+  return asked.map(({ person, fit }) => `${person ? `person ${person}: ` : ""}${fit.advice}`).join("; ");
 }
 
 /** A person: limbs, hands and feet, joints, in their own colour, or one alone in those of the sides. */
