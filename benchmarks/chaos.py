@@ -2,8 +2,8 @@
 
 Run from the checkout: .venv/bin/python benchmarks/chaos.py [--trials N] [--only CASE...] [--json]
 
-With --people 2 --cameras 3 the demo of several people is run, and each person has figures. A clip
-of a scene in which one of them leaves is given by --clip FOLDER, with --only "left alone".
+With --people 2 --cameras 3 the demo of several people is run, each person has figures, and there is
+one case more: a scene in which one of them leaves and comes back.
 """
 
 import argparse
@@ -12,9 +12,6 @@ import json
 import os
 import shutil
 import signal
-import socket
-import subprocess
-import sys
 import tempfile
 import time
 from collections.abc import Callable, Sequence
@@ -24,160 +21,25 @@ from typing import Final, Literal, NamedTuple
 import cv2
 import numpy as np
 import psutil
+from chaos_trial import Outcome, Trial
 from rich.console import Console
 
-from common.bus.bus import BusError, open_client
-from common.bus.control_messages import Pulse
-from common.bus.messages import Body
-from common.config.part_settings import BusSettings, PageSettings
+from common.bus.bus import BusError
 from common.config.settings import Settings
-from common.npz_file import Arrays
 from common.video.clips import open_clip
-from runtime.live.free_ports import free_settings
 from runtime.live.table import table_of_rows
-from runtime.store.past_run import PastRunError, open_run
-from runtime.store.run_people import people_of
-from runtime.store.runs import BELIEVED
+from synth.scene.people_scene import LEAVING_TAKE
+from synth.scene.scene_clips import SceneSet, write_scenes
 from tritrack import demo
 
-HARM_S: Final = 4.0
-"""After the first body: the person is measured then."""
 FREEZE_S: Final = 2.0
 STARTING_S: Final = (0.3, 1.0, 3.0, 0.5, 2.0, 5.0)
 """When a run that starts is stopped: one moment a trial, in turn. Python itself needs the first
 tenth of a second, in which it heeds no signal."""
-ORPHANED_S: Final = 2.0
-PATIENCE_S: Final = 120.0
-LIVE: Final = (sys.executable, "-m", "tritrack", "live")
-STARTED: Final = ("animator", "integrator", "recognizer")
-"""In the order in which a run starts them; then come the viewers, by number."""
+LEAVING_S: Final = 14.0
+"""Length of the scene that one person leaves, seconds."""
 COVERED_S: Final = (6.0, 9.0)
 """From when to when camera 1 is covered, where it is."""
-
-
-class Outcome(NamedTuple):
-    """What one trial showed."""
-
-    missing: int | None
-    """Frames of the clip without a row; None where the run was to end early."""
-    gap: int
-    """Most of them in a row."""
-    back_s: float | None
-    """From the harm until the part works again; None where it was not to be started again."""
-    code: int
-    orphans: int
-    """Processes of the run that live two seconds after its end."""
-    ports: int
-    """Ports that are still held then."""
-    rows: int | None
-    """Rows of the run; None where it cannot be read."""
-    lost_s: float | None = None
-    """What was heard before the parent died and is not in the run, seconds."""
-    people: str = ""
-    """Of each of several people: the number, rows, and share of them that are believed."""
-
-
-class Trial:
-    """One live run, and a witness on its bus."""
-
-    def __init__(self, clip: Path, folder: Path, cameras: int, people: Literal[1, "all"]) -> None:
-        """Start it."""
-        self.cameras = range(1, cameras + 1)
-        settings = free_settings(Settings(clip=str(clip), pictures=True))
-        self.bus: BusSettings = settings.bus
-        self.page: PageSettings = settings.page
-        self.out = folder / "out"
-        text = f'clip = "{clip}"\npictures = true\npeople = {json.dumps(people)}\n'
-        text += f"[page]\nport = {self.page.port}\n"
-        (folder / "run.toml").write_text(f'{text}[bus]\nendpoint = "{self.bus.endpoint}"\n')
-        words = [*LIVE, str(folder / "run.toml"), "--no-wait", "--out", str(self.out)]
-        self.run = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        self.began_s = time.monotonic()
-        self.bodies: list[Body] = []
-        self.back_s: float | None = None
-        self.seen: dict[int, psutil.Process] = {}
-
-    def parts(self) -> dict[str, psutil.Process]:
-        """Its processes by their names, and each decoder by that of its viewer: both were forked
-        by the zygote, and one pipe is theirs alone."""
-        children = psutil.Process(self.run.pid).children()
-        zygote, *forked = by_age(spoken_of(children, "forkserver"))
-        in_order = by_age([*spoken_of(children, "spawn_main"), *forked])
-        names = (*STARTED, *(f"viewer {number}" for number in self.cameras))
-        named = {"zygote": zygote, **dict(zip(names, in_order, strict=False))}
-        decoders = by_age(zygote.children())
-        held = {one: pipes(one) for one in [*forked, *decoders]}
-        shared = set.intersection(*held.values())
-        for number, one in itertools.product(self.cameras, decoders):
-            if held.get(one, set()) & held[named[f"viewer {number}"]] - shared:
-                named[f"decoder {number}"] = one
-        return named
-
-    def harmed(self, part: str, harm: Callable[[psutil.Process], None]) -> None:
-        """Listen until the harm is due, do it, and listen until the run is over."""
-        with open_client(self.bus, "room", PATIENCE_S) as bus:
-            heard, pulses = bus.subscribe(Body), bus.subscribe(Pulse)
-            first_s: float | None = None
-            harmed_s: float | None = None
-            name = part.replace("decoder", "viewer")
-            while self.run.poll() is None and time.monotonic() - self.began_s < PATIENCE_S:
-                self.bodies += [one for one in [heard.take(0.02), *heard.drain()] if one]
-                now_s = time.monotonic()
-                first_s = first_s or (now_s if self.bodies else None)
-                if harmed_s is None and first_s and now_s - first_s > HARM_S:
-                    self.remember()
-                    target = self.parts().get(part) if part else psutil.Process(self.run.pid)
-                    assert target is not None, f"there is no {part}"
-                    pulses.drain()
-                    harmed_s = now_s
-                    harm(target)
-                for pulse in pulses.drain():
-                    ready = pulse.process == name and pulse.state in ("ready", "running")
-                    if ready and harmed_s and self.back_s is None:
-                        self.back_s = time.monotonic() - harmed_s
-
-    def remember(self) -> None:
-        """All processes that the run has now."""
-        for one in psutil.Process(self.run.pid).children(recursive=True):
-            self.seen[one.pid] = one
-
-    def outcome(self, frames: int, whole: bool, restarted: bool) -> Outcome:
-        """What is left of it."""
-        code = self.run.wait(PATIENCE_S)
-        time.sleep(ORPHANED_S)
-        alive = [one for one in self.seen.values() if lives(one)]
-        held = [port for port in (self.page.port, port_of(self.bus)) if is_held(port)]
-        for one in alive:
-            one.kill()
-        try:
-            poses = open_run(self.out).poses
-        except PastRunError:
-            return Outcome(None, 0, self.back_s, code, len(alive), len(held), None)
-        found = np.unique(poses["frame"])
-        missing = np.setdiff1d(np.arange(frames), found) if whole else None
-        gap = int(np.diff(found).max(initial=1)) - 1
-        last_s = float(poses["time_s"][-1]) if len(found) else 0.0
-        lost_s = max(0.0, self.bodies[-1].captured_s - last_s) if self.bodies else None
-        return Outcome(
-            None if missing is None else len(missing),
-            gap,
-            self.back_s if restarted else None,
-            code,
-            len(alive),
-            len(held),
-            len(found),
-            None if whole else lost_s,
-            people_in(poses),
-        )
-
-
-def people_in(poses: Arrays) -> str:
-    """Of each of several people: the number, rows, and share of them that are believed."""
-    told = []
-    for number in people_of(poses):
-        own = poses["status"][poses["person"] == number]
-        told.append(f"{number}: {len(own)} rows, {np.isin(own, BELIEVED).mean():.0%}")
-    return "" if people_of(poses) == (0,) else ", ".join(told)
 
 
 def covered(clip: Path, folder: Path) -> Path:
@@ -198,20 +60,6 @@ def covered(clip: Path, folder: Path) -> Path:
         out.write(np.zeros_like(picture) if is_covered else picture)
     out.release()
     return copy
-
-
-def spoken_of(processes: Sequence[psutil.Process], word: str) -> list[psutil.Process]:
-    return [one for one in processes if word in " ".join(one.cmdline())]
-
-
-def by_age(processes: Sequence[psutil.Process]) -> list[psutil.Process]:
-    return sorted(processes, key=lambda one: (one.create_time(), one.pid))
-
-
-def pipes(process: psutil.Process) -> set[str]:
-    """The pipes that a process holds an end of."""
-    held = Path(f"/proc/{process.pid}/fd").iterdir()
-    return {name for name in map(os.readlink, held) if name.startswith("pipe:")}
 
 
 def kill(process: psutil.Process) -> None:
@@ -243,6 +91,8 @@ class Case(NamedTuple):
     starting: bool = False
     covers: bool = False
     """Camera 1 is covered for a time."""
+    leaves: bool = False
+    """Of several people one leaves, and comes back within 5 s."""
 
 
 CASES: Final = (
@@ -258,6 +108,7 @@ CASES: Final = (
     Case("integrator frozen 2 s", "integrator", freeze),
     Case("camera 1 covered 3 s", "", nothing, covers=True),
     Case("left alone", "", nothing),
+    Case("one person leaves", "", nothing, leaves=True),
     Case("SIGINT running", "", by(signal.SIGINT), whole=False),
     Case("SIGTERM running", "", by(signal.SIGTERM), whole=False),
     Case("SIGINT starting", "", by(signal.SIGINT), whole=False, starting=True),
@@ -292,27 +143,6 @@ def tried(case: Case, clip: Clip, turn: int) -> Outcome:
         return one.outcome(clip.frames, case.whole, restarted="killed" in case.name and case.whole)
 
 
-def lives(process: psutil.Process) -> bool:
-    try:
-        return bool(process.is_running() and process.status() != psutil.STATUS_ZOMBIE)
-    except psutil.NoSuchProcess:
-        return False
-
-
-def port_of(bus: BusSettings) -> int:
-    return int(bus.endpoint.rpartition(":")[2])
-
-
-def is_held(port: int) -> bool:
-    with socket.socket() as door:
-        door.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        try:
-            door.bind(("127.0.0.1", port))
-        except OSError:
-            return True
-    return False
-
-
 def row_of(name: str, outcomes: Sequence[Outcome]) -> dict[str, object]:
     """A case's trials in a line."""
 
@@ -344,8 +174,21 @@ def clip_of(given: argparse.Namespace, folder: Path) -> Clip:
         path = demo.made_scene(folder, given.people, given.cameras)
     else:
         path = demo.made_clip(folder, given.cameras)
+    return opened(path, given.people)
+
+
+def opened(path: Path, people: int) -> Clip:
     views = open_clip(Settings(clip=str(path))).views
-    return Clip(path, views[0].frames, len(views), 1 if given.people == 1 else "all")
+    return Clip(path, views[0].frames, len(views), 1 if people == 1 else "all")
+
+
+def leaving_clip(given: argparse.Namespace, folder: Path) -> Clip:
+    """A scene in which one of several leaves and comes back."""
+    wanted = SceneSet(
+        given.people, LEAVING_S, 1, given.seed, given.cameras, first_take=LEAVING_TAKE
+    )
+    (path,) = write_scenes(folder / "leaving", wanted, demo.SIZE)
+    return opened(path, given.people)
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -356,16 +199,23 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--people", type=int, default=1)
     parser.add_argument("--cameras", type=int, default=2)
     parser.add_argument("--clip", type=Path, help="this clip, of one person or of --people")
+    parser.add_argument("--seed", type=int, default=90_001, help="of the scene that one leaves")
     parser.add_argument("--json", action="store_true")
     given = parser.parse_args(arguments)
+    wanted = [
+        case
+        for case in CASES
+        if (given.only is None or case.name in given.only) and (given.people > 1 or not case.leaves)
+    ]
     console, rows = Console(stderr=True), []
     with tempfile.TemporaryDirectory(prefix="tritrack-chaos-") as folder:
-        clip = clip_of(given, Path(folder))
-        for case in CASES:
-            if given.only is None or case.name in given.only:
-                outcomes = [tried(case, clip, turn) for turn in range(given.trials)]
-                rows.append(row_of(case.name, outcomes))
-                console.print(" | ".join(str(value) for value in rows[-1].values()))
+        common = clip_of(given, Path(folder)) if any(not case.leaves for case in wanted) else None
+        for case in wanted:
+            clip = leaving_clip(given, Path(folder)) if case.leaves else common
+            assert clip is not None
+            outcomes = [tried(case, clip, turn) for turn in range(given.trials)]
+            rows.append(row_of(case.name, outcomes))
+            console.print(" | ".join(str(value) for value in rows[-1].values()))
     print(json.dumps(rows, indent=1)) if given.json else Console(width=160).print(
         table_of_rows(rows)
     )

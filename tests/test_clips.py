@@ -17,9 +17,10 @@ from common.config.settings import Settings
 from common.rig.camera import paper_rig, project
 from common.video.clip_facts import Act, Clip, ClipView, Meta, shortfall
 from common.video.clip_sources import ClipError
-from common.video.clips import find_calibration, meta_of, open_clip, probed
+from common.video.clips import find_calibration, meta_of, open_clip
 from common.video.decoding import Decoder
 from common.video.pictures import Ending, Source, Undecodable, VideoInfo
+from common.video.probing import probed
 
 SIZE = (320, 240)
 
@@ -284,7 +285,7 @@ def test_an_upright_picture_keeps_its_shape(tmp_path: Path, decoder: Decoder) ->
     settings = Settings(
         cameras={"cam1": CameraSettings(source=film(tmp_path / "a.avi", size=(270, 480)))}
     )
-    assert open_clip(settings, decoder).views[0].size == (68, 120)
+    assert open_clip(settings, decoder).views[0].size == (90, 160)
 
 
 def test_capture_times_place_the_frames_and_the_rate_carries_on_behind_them(
@@ -399,7 +400,17 @@ def test_a_missing_folder_file_or_source_is_named(tmp_path: Path, decoder: Decod
 def test_a_picture_is_no_film(tmp_path: Path, decoder: Decoder) -> None:
     cv2.imwrite(str(tmp_path / "room.png"), np.zeros((SIZE[1], SIZE[0], 3), np.uint8))
     camera = CameraSettings(source=str(tmp_path / "room.png"))
-    assert "room.png is one picture: name a video" in refusal(
+    assert "room.png is one picture, no video: name a video" in refusal(
+        Settings(cameras={"cam1": camera}), decoder
+    )
+
+
+@pytest.mark.parametrize("name", ["notes.txt", "notes.nfo", "walk.asc"])
+def test_a_text_is_no_video(tmp_path: Path, decoder: Decoder, name: str) -> None:
+    """FFmpeg draws it, letter by letter, as a video of a terminal."""
+    (tmp_path / name).write_text("a walk, on Monday\n" * 300)
+    camera = CameraSettings(source=str(tmp_path / name))
+    assert f"{name} is text, no video: name a video" in refusal(
         Settings(cameras={"cam1": camera}), decoder
     )
 

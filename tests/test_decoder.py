@@ -26,7 +26,11 @@ class Capture:
 
     def __init__(self, frames: int, fps: float = 12.5, count: float = 0.0) -> None:
         self.left, self.at = frames, -1
-        self.facts = {cv2.CAP_PROP_FPS: fps, cv2.CAP_PROP_FRAME_COUNT: count}
+        self.facts = {
+            cv2.CAP_PROP_FPS: fps,
+            cv2.CAP_PROP_FRAME_COUNT: count,
+            cv2.CAP_PROP_FOURCC: 0.0,
+        }
 
     def grab(self) -> bool:
         self.at += 1

@@ -6,7 +6,17 @@ from numpy.typing import NDArray
 
 from common.npz_file import Arrays
 from lab.accuracy.accuracy import JOINTS, Mismatch
-from lab.accuracy.identity import GATE_M, Counts, assigned, counts, figures, gaps_of, own_numbers
+from lab.accuracy.identity import (
+    GATE_M,
+    Counts,
+    Presence,
+    assigned,
+    counts,
+    figures,
+    gaps_of,
+    own_numbers,
+    presences,
+)
 
 NAN = float("nan")
 
@@ -50,6 +60,28 @@ def counted(poses: Arrays, truth: Arrays) -> Counts:
 
 STAY = truth_of([[0.0, 2.0]] * 4)
 """Two people, two metres apart, four frames."""
+
+
+def test_who_leaves_and_comes_back_is_there_twice_each_time_by_a_number() -> None:
+    """Ten frames; the second person is away in frames 3 to 6, and comes back as 9; the first is
+    matched in nine frames, and not looked for in one, which is no absence."""
+    truth = truth_of([[0.0, 2.0]] * 10, absent=((8, 0), *((frame, 1) for frame in range(3, 7))))
+    poses = poses_of(
+        *((frame, 4, 0.0) for frame in range(10) if frame != 5),
+        *((frame, 2, 2.0) for frame in range(3)),
+        *((frame, 9, 2.0) for frame in range(8, 10)),
+    )
+    assert presences(gaps_of(poses, truth), 2) == [
+        Presence(0, 0, 9, 4, 8 / 9),
+        Presence(1, 0, 2, 2, 1.0),
+        Presence(1, 7, 9, 9, 2 / 3),
+    ]
+    assert [one.last for one in presences(gaps_of(poses, truth), 5)] == [9, 9]
+
+
+def test_who_has_no_body_is_there_without_a_number() -> None:
+    found = presences(gaps_of(poses_of((0, 1, 7.0)), STAY), 2)
+    assert found == [Presence(0, 0, 3, None, 0.0), Presence(1, 0, 3, None, 0.0)]
 
 
 def test_people_who_are_tracked_exactly_are_perfect_whatever_their_numbers() -> None:

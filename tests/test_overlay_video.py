@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from animator.overlay import SHOWN
-from common.config.picture_size import working_size
+from common.config.picture_size import size_within
 from common.rig.camera import Camera, Matrix
 from common.video.pictures import Wanted
 from runtime.offline.video_tracking import Followed
@@ -153,5 +153,5 @@ def test_masks_are_drawn_on_paper_and_clips_on_their_own_frames_upright(
     view = SimpleNamespace(source="a.mp4", upright_source=(720, 1280), quarters=3)
     of_clip: Any = SimpleNamespace(clip=SimpleNamespace(views=(view, None), every=2))
     assert list(overlay_video._pictures(of_clip, decoder)) == [0, 1]
-    size = working_size((720, 1280), SHOWN)
+    size = size_within((720, 1280), SHOWN)
     assert asked == [("a.mp4", size, Wanted(2, quarters=3))]

@@ -36,6 +36,15 @@ def test_a_videos_facts_are_read_from_it(tmp_path: Path) -> None:
     assert str(tmp_path) not in said
 
 
+def test_a_text_is_no_video(tmp_path: Path) -> None:
+    """As for the commands."""
+    notes = tmp_path / "notes.nfo"
+    notes.write_text("a walk, on Monday\n" * 300)
+    with Decoder() as decoder:
+        fault = facts_of(Upload(1, notes, 5400, 5400), decoder).fault
+    assert fault.startswith("notes.nfo is text, no video")
+
+
 def test_a_picture_is_no_video_nor_is_a_file_twice(tmp_path: Path) -> None:
     picture, one, other = tmp_path / "photo.png", tmp_path / "a.avi", tmp_path / "b.avi"
     cv2.imwrite(str(picture), np.zeros((100, 100, 3), np.uint8))

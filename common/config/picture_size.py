@@ -23,7 +23,15 @@ def size_of(text: str) -> tuple[int, int]:
     return int(width), int(height)
 
 
-def working_size(source: tuple[int, int], bound: tuple[int, int]) -> tuple[int, int]:
+def size_within(source: tuple[int, int], bound: tuple[int, int]) -> tuple[int, int]:
     """The largest size of the source's shape within the bound; never larger than the source."""
     shrink = min(1.0, bound[0] / source[0], bound[1] / source[1])
     return max(1, round(source[0] * shrink)), max(1, round(source[1] * shrink))
+
+
+def working_size(source: tuple[int, int], bound: tuple[int, int]) -> tuple[int, int]:
+    """The size at which a source's pictures are worked on: the largest of its shape within the
+    bound, which is turned as the source is. So an upright video has as many pixels as a wide one.
+    """
+    is_turned = (source[0] < source[1]) != (bound[0] < bound[1])
+    return size_within(source, bound[::-1] if is_turned else bound)

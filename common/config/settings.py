@@ -44,7 +44,8 @@ class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A clip folder, or a settings file, that shows the person in a T pose before the run: the
     body is measured there. Its cameras may stand elsewhere."""
     size: str = "160x120"
-    """Bound of the working picture; the aspect ratio is kept."""
+    """Bound of the working picture; the aspect ratio is kept. For upright videos it is turned:
+    `320x240` allows them 240x320."""
     landmarks: str = "own"
     """Source of the landmarks: the network in the package ("own"), no source ("none"),
     "mediapipe", another network (a file that `tritrack train --what landmarks` wrote), or a

@@ -28,15 +28,14 @@ from common.video.clip_sources import (
 )
 from common.video.decoding import Decoder
 from common.video.frame_times import timed
-from common.video.pictures import DecoderDied, Source, Undecodable, VideoInfo, is_recorded
+from common.video.pictures import VideoInfo, is_recorded
+from common.video.probing import probed, refuse_no_video
 from common.video.shared_rate import at_one_rate
 from common.video.upright_views import filed_rig, upright_views
 from common.video.view_pair import refuse_missing, refuse_same_source
 
 SAME_ASPECT: Final = 0.02
 """Largest difference of aspect ratios at which two sizes show the same picture."""
-AVI_HEAD: Final = b"RIFF"
-
 CAMERA_HZ: Final = 15.0
 """Frame rate assumed for a camera that reports none: the paper's (P1)."""
 
@@ -143,10 +142,7 @@ def _view(named: ViewSource, settings: Settings, meta: Meta, decoder: Decoder) -
     of_a_file = is_recorded(named.source)
     told_hz = settings.fps or meta.fps_of(named.name)
     fps = (told_hz or info.fps) if of_a_file else (info.fps or CAMERA_HZ)
-    if fps <= 0 and info.frames == 1:
-        raise ClipError(f"{named.source} is one picture: name a video")
-    if fps <= 0:
-        raise ClipError(f"{named.source} has no frame rate: set fps in a meta.json beside it")
+    refuse_no_video(named.source, info.frames, fps)
     size = (info.width, info.height)
     return ClipView(
         number=named.number,
@@ -167,23 +163,6 @@ def _told_s(meta: Meta, named: ViewSource) -> tuple[float, ...]:
     return meta.capture_s.get(named.name, ()) if is_recorded(named.source) else ()
 
 
-def probed(source: Source, decoder: Decoder) -> VideoInfo:
-    """The facts of a file or camera.
-
-    Raises:
-        ClipError: When it does not exist, cannot be read, is empty, or has no picture.
-    """
-    if is_recorded(source):
-        refuse_unreadable(Path(source))
-    try:
-        info = decoder.probe(source)
-    except (Undecodable, DecoderDied) as error:
-        raise ClipError(str(error)) from error
-    if is_recorded(source):
-        _refuse_a_lost_head(Path(source))
-    return info
-
-
 def _refuse_another_scene(named: ViewSource, plate: VideoInfo, info: VideoInfo) -> None:
     """A picture of another shape was cropped, or comes from another camera; the size does not
     matter."""
@@ -194,35 +173,6 @@ def _refuse_another_scene(named: ViewSource, plate: VideoInfo, info: VideoInfo) 
             f"{named.source} {info.width}x{info.height}: take an empty frame of the same camera, "
             "uncropped"
         )
-
-
-def refuse_unreadable(path: Path) -> None:
-    """Refuse a file that does not exist, is empty, or cannot be read.
-
-    Raises:
-        ClipError: When it cannot be used.
-    """
-    if path.is_dir():
-        raise ClipError(f"{path} is a folder: name a file in it")
-    if not path.is_file():
-        raise ClipError(f"there is no file {path}: check the path")
-    try:
-        with path.open("rb") as file:
-            empty = not file.read(1)
-    except OSError as error:
-        raise ClipError(
-            f"cannot read {path}: {error.strerror}; see that you may read it (chmod u+r)"
-        ) from error
-    if empty:
-        raise ClipError(f"{path} is empty: copy or record it again")
-
-
-def _refuse_a_lost_head(path: Path) -> None:
-    """OpenCV decodes a file with a damaged header too, but then makes up rate and number of
-    frames."""
-    with path.open("rb") as file:
-        if path.suffix.lower() == ".avi" and file.read(4) != AVI_HEAD:
-            raise ClipError(f"{path} is no AVI from its first byte on: copy or record it again")
 
 
 def _rig(

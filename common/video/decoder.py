@@ -31,6 +31,8 @@ SIGN_OF_LIFE: Final = 100
 """While frames are skipped, the child reports progress every so many frames."""
 
 
+TEXT_ART: Final = cv2.VideoWriter.fourcc(*"ansi")
+"""Codec that FFmpeg has for texts."""
 PROGRESSIVE: Final = "make it progressive (ffmpeg -i IN -vf yadif -c:v mjpeg -q:v 2 OUT.avi)"
 """The cure for an interlaced video."""
 
@@ -123,10 +125,15 @@ def opened(source: Source, every: int, start: int, complaints: Complaints) -> Op
         every: Only frames whose index is a multiple of it are decoded to pictures, ...
         start: ... and only the very first one and those from this index on.
         complaints: FFmpeg's messages about it.
+
+    Raises:
+        Refused: When it is a text, of which FFmpeg makes a video of a terminal.
     """
     if is_recorded(source) and cv2.haveImageReader(source) and cv2.imcount(source) == 1:
         return OpenVideo(0.0, 1, iter([Grabbed(0, time.monotonic(), cv2.imread(source))]))
     capture = cv2.VideoCapture(source)
+    if is_recorded(source) and round(capture.get(cv2.CAP_PROP_FOURCC)) == TEXT_ART:
+        raise Refused(f"{source} is text, no video: name a video")
     fps, frames = capture.get(cv2.CAP_PROP_FPS), capture.get(cv2.CAP_PROP_FRAME_COUNT)
     taken = grabs(capture, every, start)
     if is_recorded(source):

@@ -45,6 +45,20 @@ class Gaps(NamedTuple):
     """The numbers of the bodies."""
 
 
+class Presence(NamedTuple):
+    """A person in the scene, from when they come until they leave."""
+
+    who: int
+    """The person in the truth."""
+    first: int
+    """First frame; `last` is the last one."""
+    last: int
+    number: int | None
+    """The number that matches them most often meanwhile; None: no body does."""
+    share: float
+    """Share of their frames in which that number matches."""
+
+
 class Counts(NamedTuple):
     """What the measures are computed from; counts of clips add up."""
 
@@ -149,6 +163,25 @@ def own_numbers(gaps: Gaps) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Person and index of their number, one for the whole clip: most frames match."""
     who, number = linear_sum_assignment(-np.isfinite(gaps.gap_m).sum(axis=0))
     return who, number
+
+
+def presences(gaps: Gaps, least: int) -> list[Presence]:
+    """When each person was there, and by which number they were followed then, by person and time.
+
+    Args:
+        gaps: Of a clip.
+        least: Shortest absence that counts, frames; a shorter one is part of the presence.
+    """
+    found = []
+    for who, due in enumerate(gaps.due.T):
+        rows = np.flatnonzero(due)
+        for own in np.split(rows, np.flatnonzero(np.diff(rows) > least) + 1) if len(rows) else []:
+            matched = np.isfinite(gaps.gap_m[own, who]).sum(axis=0)
+            best = int(matched.argmax()) if matched.any() else None
+            number = None if best is None else int(gaps.numbers[best])
+            share = 0.0 if best is None else float(matched[best] / len(own))
+            found.append(Presence(who, int(own[0]), int(own[-1]), number, share))
+    return found
 
 
 def figures(clips: Sequence[Counts]) -> Facts:

@@ -78,42 +78,57 @@ def run(
     """
     with ExitStack() as doors:
         hub = doors.enter_context(watched(parts[0]))
-
-        def look_at_hub() -> None:
-            _look_after([hub], heard)
-            hub.refuse_failure()
-            show(heard)
-
-        bus = doors.enter_context(_client(settings, stop, look_at_hub))
+        bus = doors.enter_context(_client(settings, stop, lambda: _look_at_hub(hub, heard, show)))
         if bus is None:
             return
         listening = Subscriber(bus, heard)
         crew = [hub, *(doors.enter_context(watched(part)) for part in parts[1:])]
-        page = [] if desk is None or desk.watched is None else [desk.watched]
         if desk is not None:
             desk.listen(bus)
         try:
             while not stop.wait(LOOK_S) and not _over(crew):
-                listening.catch_up()
-                _look_after([*crew, *page], heard)
+                _catch_up(crew, listening, heard, desk)
                 show(heard)
                 if desk is not None:
                     desk.serve(heard, stop)
             time.sleep(LAST_WORDS_S)
         finally:
-            listening.catch_up()
-            if desk is not None:
-                desk.leave(heard)
-            heard.notes.extend(filter(None, [one.end() for one in reversed(crew)]))
-            listening.catch_up()
-            if listening.dropped:
-                heard.notes.append(
-                    f"{listening.dropped} poses or postures were lost on the way to the run folder"
-                )
+            _end(crew, listening, heard, desk)
             show(heard)
         if not stop.is_set():
             for one in crew:
                 one.refuse_failure()
+
+
+def _look_at_hub(hub: Watched, heard: Heard, show: Callable[[Heard], None]) -> None:
+    """Until the hub can be reached: its process alone, without which there is no run."""
+    _look_after([hub], heard)
+    hub.refuse_failure()
+    show(heard)
+
+
+def _catch_up(
+    crew: Sequence[Watched], listening: "Subscriber", heard: Heard, desk: PageDesk | None
+) -> None:
+    """Receive what was said, and look after every process, the page's too."""
+    listening.catch_up()
+    page = [] if desk is None or desk.watched is None else [desk.watched]
+    _look_after([*crew, *page], heard)
+
+
+def _end(
+    crew: Sequence[Watched], listening: "Subscriber", heard: Heard, desk: PageDesk | None
+) -> None:
+    """End the parts in the reverse order of their start, and receive their last messages."""
+    listening.catch_up()
+    if desk is not None:
+        desk.leave(heard)
+    heard.notes.extend(filter(None, [one.end() for one in reversed(crew)]))
+    listening.catch_up()
+    if listening.dropped:
+        heard.notes.append(
+            f"{listening.dropped} poses or postures were lost on the way to the run folder"
+        )
 
 
 def _look_after(crew: Sequence[Watched], heard: Heard) -> None:

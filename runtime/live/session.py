@@ -107,13 +107,7 @@ def live(
         try:
             _follow(run_of, stop, heard, tell)
         finally:
-            note_lost(heard)
-            kept = finish_pictures(folder, heard.notes)
-            told = facts(heard.so_far) | kept
-            bodies = WholeRun(heard.bodies, Journalled(out, Body))
-            write_run(out, bodies, settings, told)
-            postures = WholeRun(heard.postures, Journalled(out, Posture))
-            write_postures(out, postures, told["posture"])
+            told = _written(run_of, heard, facts)
             journal.remove()
         _show_end(desk, {**told, **_counts(out)}, stop, console)
     return told
@@ -161,6 +155,18 @@ def _follow(
         run(parts, settings, stop, look, heard, desk)
         note_unseen(heard)
         show(heard)
+
+
+def _written(run_of: _Prepared, heard: Heard, facts: Callable[[SoFar], Facts]) -> Facts:
+    """Write what was heard into the run folder; returns the summary's facts."""
+    note_lost(heard)
+    kept = finish_pictures(run_of.pictures, heard.notes)
+    told = facts(heard.so_far) | kept
+    bodies = WholeRun(heard.bodies, Journalled(run_of.out, Body))
+    write_run(run_of.out, bodies, run_of.settings, told)
+    postures = WholeRun(heard.postures, Journalled(run_of.out, Posture))
+    write_postures(run_of.out, postures, told["posture"])
+    return told
 
 
 def _kept(

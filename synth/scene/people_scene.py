@@ -22,6 +22,8 @@ from synth.scene.walking import OPENED_S, acted, opening_phase
 
 LEADS: Final = ("mingle", "orbit", "perform", "hug", "hand over", "leave")
 """First beats, in turn by take."""
+LEAVING_TAKE: Final = LEADS.index("leave") + 1
+"""The first take of several people in which one of them leaves first of all."""
 ALONE: Final = ("mingle", "perform", "leave")
 """Those for one person."""
 LATE_SHARE: Final = 0.25

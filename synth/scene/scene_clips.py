@@ -63,6 +63,8 @@ class SceneSet(NamedTuple):
     and noise: what tracking loses by the others is the difference."""
     postures: tuple[str, ...] = ()
     """What everybody performs again and again, by person, in turn; empty: random plots."""
+    first_take: int = 1
+    """Number of the first scene; it decides the first beat."""
 
 
 def write_scenes(
@@ -92,7 +94,7 @@ def write_scenes(
     refuse_to_lose(out / "calibration.json", rig)
     write_rig(out / "calibration.json", rig)
     folders = []
-    for take in range(1, wanted.takes + 1):
+    for done, take in enumerate(range(wanted.first_take, wanted.first_take + wanted.takes), 1):
         folders.append(out / scene_name(wanted.people, wanted.seed, take))
         room_seed = wanted.seed * ROOM_SEED + take
         first = (*wanted[:2], wanted.seed, take, room_seed)
@@ -102,7 +104,7 @@ def write_scenes(
         if wanted.alone:
             folders += _write_each(folders[-1], made, filming, take)
         if progress is not None:
-            progress(take, wanted.takes)
+            progress(done, wanted.takes)
     return folders
 
 
@@ -211,7 +213,8 @@ def _refuse_what_cannot_be(wanted: SceneSet, size: tuple[int, int]) -> None:
     for what, number, low, high in ranges:
         if not low <= number <= high:
             raise SynthError(f"{what} must be {low:g} to {high:g}, got {number:g}")
-    for what, number, low in (("takes", wanted.takes, 1), ("seed", wanted.seed, 0)):
+    least = (("takes", wanted.takes, 1), ("take", wanted.first_take, 1), ("seed", wanted.seed, 0))
+    for what, number, low in least:
         if number < low:
             raise SynthError(f"{what} must be at least {low}, got {number}")
     if min(size) < 32 or max(size) > 4096:

@@ -96,37 +96,49 @@ def line_of_runs(clips: Mapping[str, Mapping[str, Any]], out: Path) -> str:
     return line + (rig if doubted else "")
 
 
+Motion = Annotated[
+    Literal["postures", "free", "fall", "stream", "spot", "cross"] | None,
+    typer.Option(
+        help="15 postures, free, falls, postures in one take, always on one spot, a second "
+        "person walks past one on a spot."
+    ),
+]
+Performers = Annotated[
+    int | None, typer.Option(min=1, max=1000, help="How many people, one in each clip.")
+]
+SceneOf = Annotated[
+    int | None, typer.Option(help="Scenes instead: so many people in a room at once, 1 to 5.")
+]
+Seconds = Annotated[float | None, typer.Option(help="How long a scene of --people is.")]
+Begins = Annotated[bool, typer.Option(help="A scene begins with an empty room.")]
+Alone = Annotated[bool, typer.Option("--alone", help="Each of a scene alone, too.")]
+Takes = Annotated[int, typer.Option(min=1, max=100, help="Takes of each, or scenes.")]
+Seed = Annotated[int, typer.Option(min=0, help="Seed of the first performer.")]
+Rendered = Annotated[str, typer.Option(help="Picture size, WIDTHxHEIGHT.", callback=size_given)]
+Performed = Annotated[
+    list[str] | None,
+    typer.Option(help="Only this posture; may be given again. With --people, one for each."),
+]
+CameraCount = Annotated[
+    int, typer.Option(help="How many, 1 to 8: the paper's two, then more around the person.")
+]
+Moving = Annotated[bool | None, typer.Option("--moving", help="Screens and trees move.")]
+
+
 def synth(
     out: Out,
-    motion: Annotated[
-        Literal["postures", "free", "fall", "stream", "spot", "cross"] | None,
-        typer.Option(
-            help="15 postures, free, falls, postures in one take, always on one spot, a second "
-            "person walks past one on a spot."
-        ),
-    ] = None,
-    performers: Annotated[
-        int | None, typer.Option(min=1, max=1000, help="How many people, one in each clip.")
-    ] = None,
-    people: Annotated[
-        int | None, typer.Option(help="Scenes instead: so many people in a room at once, 1 to 5.")
-    ] = None,
-    seconds: Annotated[float | None, typer.Option(help="How long a scene of --people is.")] = None,
-    opening: Annotated[bool, typer.Option(help="A scene begins with an empty room.")] = True,
-    alone: Annotated[bool, typer.Option("--alone", help="Each of a scene alone, too.")] = False,
-    takes: Annotated[int, typer.Option(min=1, max=100, help="Takes of each, or scenes.")] = 1,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of the first performer.")] = 0,
-    size: Annotated[
-        str, typer.Option(help="Picture size, WIDTHxHEIGHT.", callback=size_given)
-    ] = "320x240",
-    posture: Annotated[
-        list[str] | None,
-        typer.Option(help="Only this posture; may be given again. With --people, one for each."),
-    ] = None,
-    cameras: Annotated[
-        int, typer.Option(help="How many, 1 to 8: the paper's two, then more around the person.")
-    ] = 2,
-    moving: Annotated[bool | None, typer.Option("--moving", help="Screens and trees move.")] = None,
+    motion: Motion = None,
+    performers: Performers = None,
+    people: SceneOf = None,
+    seconds: Seconds = None,
+    opening: Begins = True,
+    alone: Alone = False,
+    takes: Takes = 1,
+    seed: Seed = 0,
+    size: Rendered = "320x240",
+    posture: Performed = None,
+    cameras: CameraCount = 2,
+    moving: Moving = None,
     json_wanted: JsonWanted = False,
 ) -> None:
     """Make clips of synthetic people with ground truth.

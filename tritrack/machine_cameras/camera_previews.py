@@ -9,9 +9,8 @@ from typing import Final
 
 from animator.start.sections import Cameras, ShownCamera
 from calibration.board.board_progress import HOLD_S, words_of
-from common.config.picture_size import working_size
+from common.config.picture_size import size_within
 from common.video.clip_sources import ClipError
-from common.video.clips import probed
 from common.video.decoding import Decoder
 from common.video.pictures import (
     Decoded,
@@ -22,6 +21,7 @@ from common.video.pictures import (
     VideoInfo,
     is_recorded,
 )
+from common.video.probing import probed
 from tritrack.machine_cameras.board_watch import BoardWatch
 from tritrack.machine_cameras.camera_list import FoundCamera, no_camera
 from tritrack.marking.stills import Running, jpeg_of
@@ -98,7 +98,7 @@ class Preview:
             info = probed(source, self._decoder)
             rate = f"{info.fps:.4g} frames a second" if info.fps else "rate not told"
             self.facts = f"{info.width}x{info.height}, {rate}"
-            size = working_size((info.width, info.height), BOUND)
+            size = size_within((info.width, info.height), BOUND)
             reader = Playing(self._decoder, info)
             self._running = Running(reader, source, size)
         except (ClipError, DecoderDied) as error:

@@ -13,12 +13,13 @@ from rich.console import Console
 
 from animator.marking.marking_page import LIVE, still_address
 from animator.marking.sheet import Pictures
-from common.config.picture_size import working_size
+from common.config.picture_size import size_within
 from common.config.settings import Settings
 from common.video.clip_sources import NOTHING, ClipError, ViewSource, sources_of
-from common.video.clips import SAME_ASPECT, probed
+from common.video.clips import SAME_ASPECT
 from common.video.decoding import Decoder
 from common.video.pictures import Decoded, DecoderDied, Image, Size, Source, Wanted, is_camera
+from common.video.probing import probed
 from runtime.terminal import bar
 
 MOST_STILLS: Final = 100
@@ -162,7 +163,7 @@ def common_size(sizes: Sequence[Size]) -> Size:
                     *first, *other
                 )
             )
-    return working_size(first, BOUND)
+    return size_within(first, BOUND)
 
 
 def _film(decoder: Decoder, view: ViewSource, size: Size, frames: int, console: Console) -> Film:

@@ -14,7 +14,7 @@ from animator.video_codec import Picture
 from common.bus.messages import ViewerNumber
 from common.config.explained import explained
 from common.config.part_settings import SettingsError
-from common.config.picture_size import working_size
+from common.config.picture_size import size_within
 from common.config.renamed_settings import settings_of
 from common.config.settings import Settings
 from common.npz_file import Facts
@@ -101,7 +101,7 @@ def moments(run: PastRun, clip: Clip) -> Iterator[Moment]:
     """
     time_s = np.asarray(run.poses["time_s"], float)
     shown = SHOWN if len(clip.views) <= 2 else SMALL
-    sizes = {view.number: working_size(view.upright_source, shown) for view in clip.views}
+    sizes = {view.number: size_within(view.upright_source, shown) for view in clip.views}
     larger = tuple(msgspec.structs.replace(view, size=sizes[view.number]) for view in clip.views)
     last = {n: np.full((h, w, 3), PAPER, np.uint8) for n, (w, h) in sizes.items()}
     by_number = {view.number: view for view in clip.views}

@@ -12,7 +12,7 @@ from animator.video_codec import Picture
 from animator.video_file import WrittenVideo, write_video
 from common.body.body import Vector
 from common.bus.messages import Body, View
-from common.config.picture_size import working_size
+from common.config.picture_size import size_within
 from common.raster.silhouette_report import mask_of
 from common.rig.upright_camera import as_worked_on
 from common.video.decoding import Decoder
@@ -91,7 +91,7 @@ def _pictures(found: Followed, decoder: Decoder) -> Iterator[Picture]:
         yield from [paper] * len(found.reports)
         return
     view = found.clip.views[0]
-    size = working_size(view.upright_source, SHOWN)
+    size = size_within(view.upright_source, SHOWN)
     wanted = Wanted(found.clip.every, quarters=view.quarters)
     for decoded in decoder.frames(view.source, size, wanted):
         yield decoded.picture

@@ -17,7 +17,7 @@ from animator.take import Take, take_of
 from common.bus.process import ProcessContext, process
 from common.config.explained import explained
 from common.config.part_settings import CameraSettings, SettingsError
-from common.config.picture_size import working_size
+from common.config.picture_size import size_within
 from common.config.renamed_settings import settings_of
 from common.config.settings import Settings
 from common.notes.notes import Notes
@@ -224,7 +224,7 @@ def _pictures(clip: Clip, take: Take, console: Console) -> Sequence[bytes]:
             f"most {MOST_PICTURES} frames each"
         )
     view = clip.views[0]
-    size = working_size(view.source_size, SHOWN)
+    size = size_within(view.source_size, SHOWN)
     wanted = {int(frame) for frame in take.frame}
     found: dict[int, bytes] = {}
     with Decoder() as decoder, bar(console) as progress:

@@ -16,7 +16,7 @@ import numpy as np
 from animator.overlay import draw_stick
 from animator.start.sections import Runs, ShownRun
 from common.body.body import Vector
-from common.config.picture_size import size_of, working_size
+from common.config.picture_size import size_of, size_within, working_size
 from common.npz_file import Facts
 from common.video.decoding import Decoder
 from common.video.pictures import DecoderDied, Image, Size, Undecodable, Wanted
@@ -220,7 +220,7 @@ def _frame_or_paper(
             info = decoder.probe(films[0])
             size = (info.width, info.height)
             wanted = Wanted(start=max(0, frame))
-            shown = decoder.frames(films[0], working_size(size, PICTURE), wanted)
+            shown = decoder.frames(films[0], size_within(size, PICTURE), wanted)
             image = next(shown).picture.copy()
             shown.close()
             return image, working_size(size, bound)[0]

@@ -12,9 +12,9 @@ from common.bus.messages import MOST_VIEWS
 from common.sound.sound_of_video import RATE_HZ, sound_of
 from common.sound.sound_offset import delay_of
 from common.video.clip_sources import ClipError
-from common.video.clips import probed
 from common.video.decoding import Decoder
 from common.video.pictures import DecoderDied, VideoInfo
+from common.video.probing import probed, refuse_no_video
 from runtime.sound_clocks import MOST_S
 from tritrack.starting.job_plan import name_of_files, tasks_of
 from tritrack.starting.uploads import Upload
@@ -52,11 +52,10 @@ def facts_of(upload: Upload, decoder: Decoder, others: Sequence[Upload] = ()) ->
         if twin is not None:
             return Facts(fault=f"the same file as {twin.title}: take one away", twin=twin.number)
         info = probed(str(upload.path), decoder)
+        refuse_no_video(str(upload.path), info.frames, info.fps)
     except (ClipError, DecoderDied, OSError) as error:
         said = str(error).replace(str(upload.path), upload.title)
         return Facts(fault=f"{said}. Take it away if it is no video.")
-    if info.frames == 1 or not (info.frames > 0 or info.fps > 0):
-        return Facts(fault=f"{upload.title} is one picture, no video: take it away")
     return Facts(info)
 
 

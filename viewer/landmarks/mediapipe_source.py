@@ -7,7 +7,7 @@ from typing import Final, Self
 
 from common.body.observation import Landmarks
 from common.config.part_settings import SettingsError
-from common.config.picture_size import working_size
+from common.config.picture_size import size_within
 from common.platform.platform import Broken, Child
 from common.platform.platforms import platform
 from common.video.clip_facts import ClipView
@@ -56,7 +56,7 @@ class MediaPipe:
         refuse_where_missing()
         self.odd: tuple[str, ...] = ()
         self._view, self._stall_s = view, stall_s
-        self._size = working_size(view.upright_source, LOOKED_AT)
+        self._size = size_within(view.upright_source, LOOKED_AT)
         self._asked_s: float | None = None
         """When the child was asked what it has not answered yet; None: it has answered all."""
         module = f"{__package__}.mediapipe_child"
