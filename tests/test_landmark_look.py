@@ -16,7 +16,7 @@ from common.body.kinematics import joints
 from common.body.proportions import body_vector, thesis_bdp
 from common.rig.camera import Camera, Rig, as_row, centre, paper_rig, project
 from integrator.proposal.landmark_look import FACED, JOINTS, KNOWN, MIDDLE, STANDS, Shown, look
-from integrator.proposal.silhouette_window import LONGEST_S, NEARNESS, USUAL_S, axes_of
+from integrator.proposal.silhouette_window import FAR_M, LONGEST_S, NEARNESS, USUAL_S, axes_of
 
 TALL_M = 1.75
 RIG = paper_rig((320, 240), (300.0, 300.0), (4.0, 5.0))
@@ -73,6 +73,22 @@ def test_without_ankles_the_size_says_it_roughly() -> None:
     assert seen is not None
     assert seen.inputs[KNOWN - 1] == 0.0
     assert np.linalg.norm(seen.middle_m - body_m[MIDDLE].mean(axis=0)) < 2.0
+
+
+@pytest.mark.parametrize(("rise_px", "firm"), [(0.0, 1.0), (40.0, 0.0)])
+def test_forty_metres_off_an_ankle_counts_where_the_size_agrees(
+    rise_px: float, firm: float
+) -> None:
+    """Of feet 40 pixels too high the floor would make 120 m, thrice what the size says."""
+    camera = paper_rig((640, 480), (2600.0, 2600.0), (40.0, 40.0)).cameras[0]
+    body_m = somebody(z_m=0.0)
+    body_px = project(camera, body_m)
+    body_px[[AT["l_ankle"], AT["r_ankle"]]] -= 0.0, rise_px
+    seen = look((shown_by(camera, body_m, joints_px=body_px), None), Rig(640, 480, (camera, camera)), TALL_M, 0.1)
+    assert seen is not None
+    assert seen.inputs[KNOWN - 1] == firm
+    assert seen.inputs[KNOWN - 2] == pytest.approx(NEARNESS * TALL_M / FAR_M - 1.0, abs=1e-3)
+    assert np.linalg.norm(seen.middle_m - body_m[MIDDLE].mean(axis=0)) < (0.5 if firm else 20.0)
 
 
 def test_joints_are_told_in_statures_right_of_the_middle_and_above_it() -> None:

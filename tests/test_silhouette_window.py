@@ -20,6 +20,7 @@ from integrator.proposal.silhouette_window import (
     FINER,
     LONGEST_S,
     NEAR_M,
+    TALLEST_M,
     NEARNESS,
     ROWS,
     STEEPEST,
@@ -346,7 +347,11 @@ def test_a_gap_is_said_in_frames_and_no_longer_than_it_may_be(since_s: float) ->
 def test_who_seems_to_stand_too_near_or_too_far_is_looked_for_at_the_bounds() -> None:
     """A level camera; the feet just under its horizon, or at its own."""
     camera = RIG.cameras[0]
-    for rows, far_m in (((200, 242), FAR_M), ((100, 200), FAR_M), ((2, 478), None)):
+    for rows, far_m in (
+        ((200, 242), TALLEST_M * 800.0 / 42.0),
+        ((100, 200), TALLEST_M * 800.0 / 100.0),
+        ((2, 478), None),
+    ):
         mask = np.zeros((480, 640), np.bool_)
         mask[rows[0] : rows[1], 310:330] = True
         found = standing_m(mask, camera)
@@ -354,6 +359,19 @@ def test_who_seems_to_stand_too_near_or_too_far_is_looked_for_at_the_bounds() ->
         lens_m = centre(camera)[1]
         due = lens_m * 800.0 / (rows[1] - 240.0) if far_m is None else far_m
         assert flat_m == pytest.approx(max(due, NEAR_M), rel=0.01)
+
+
+def test_who_is_forty_metres_off_in_a_long_lens_stands_where_their_feet_are() -> None:
+    """Twelve metres were the bound once: there the same silhouette is of a child of half a metre,
+    metres above the floor. The perspective that is said beside is that of FAR_M."""
+    camera = paper_rig((640, 480), (5200.0, 5200.0), (40.0, 40.0)).cameras[0]
+    mask = np.zeros((480, 640), np.bool_)
+    (column, top), (_, bottom) = project(camera, np.array([[0.3, 1.8, 0.0], [0.3, 0.0, 0.0]]))
+    mask[round(top) : round(bottom), round(column) - 20 : round(column) + 20] = True
+    assert standing_m(mask, camera) == pytest.approx([0.3, 0.9, 0.0], abs=0.2)
+    said = np.zeros(5, np.float32)
+    _tell(np.eye(3), np.array([0.0, 0.0, 40.0]), 1.5, said)
+    assert said[4] == pytest.approx(NEARNESS * 1.5 / FAR_M)
 
 
 @pytest.mark.parametrize("roll_deg", [0.0, 65.0])

@@ -39,6 +39,9 @@ SPREAD: Final = 0.33
 """Distance of joints from their middle, statures, used where nothing else determines the
 distance."""
 LEAST_SPREAD: Final = 1e-3
+STRETCHED: Final = 2.0
+"""Ratio of the distance by the floor to that by the joints' size above which, far off, the ankle is
+not on the floor: arms and legs that are stretched bring the size's distance down by less."""
 STEEPEST: Final = 1e-3
 """Cosine of the angle between a ray and the floor for a person seen from above or below."""
 ASLANT: Final = 0.05
@@ -113,7 +116,8 @@ def look(
             return None
         own = inputs[n * KNOWN : (n + 1) * KNOWN]
         _tell_joints(own, plane * far_m / stature_m, seen, mirrored)
-        own[STANDS:KNOWN] = *(turn @ away_m / far_m), NEARNESS * stature_m / far_m - 1.0, firm
+        near = NEARNESS * stature_m / min(far_m, FAR_M) - 1.0
+        own[STANDS:KNOWN] = *(turn @ away_m / far_m), near, firm
     inputs[-2:] = min(since_s, LONGEST_S) / USUAL_S - 1.0, len(told) - 1.0
     return Look(inputs, middle_m, turn, mirrored)
 
@@ -165,8 +169,8 @@ def _where_it_stands(shown: Shown, camera: Camera, stature_m: float) -> tuple[Ve
     drop_m = centre(camera)[1] - ANKLE_UP * stature_m
     falls, along = -float(seen[low, 1]), float(seen[low] @ forward)
     floor_m = drop_m / falls * along if falls > 0.0 and drop_m > 0.0 else np.inf
-    firm = bool(shown.confidence[low] >= SURE and NEAR_M < floor_m < FAR_M)
     off = ((plane - plane[MIDDLE].mean(axis=0)) ** 2).sum(axis=1)
     spread = np.sqrt(shown.confidence @ off / max(float(shown.confidence.sum()), LEAST_SPREAD))
-    size_m = min(max(SPREAD * stature_m / max(spread, LEAST_SPREAD), NEAR_M), FAR_M)
+    size_m = max(SPREAD * stature_m / max(spread, LEAST_SPREAD), NEAR_M)
+    firm = bool(shown.confidence[low] >= SURE and NEAR_M < floor_m < max(FAR_M, STRETCHED * size_m))
     return centre(camera) + forward * (floor_m if firm else size_m), firm

@@ -41,8 +41,14 @@ ALONG: Final = 1e-3
 """Sine of the angle below which a direction counts as along an axis."""
 NEARNESS: Final = 4.0
 """Factor that brings stature over distance to about one."""
-NEAR_M, FAR_M = 1.0, 12.0
-"""Range of distances, metres, in which a single camera looks for a person."""
+NEAR_M: Final = 1.0
+"""Least distance, metres, at which a single camera looks for a person."""
+TALLEST_M: Final = 3.0
+"""Extent, metres, of a very tall person with raised arms: a single camera looks for a person no
+farther off than where their silhouette would be so large."""
+FAR_M: Final = 12.0
+"""Distance, metres, beyond which the networks are shown no smaller perspective: the training data
+contain none."""
 
 
 class Look(NamedTuple):
@@ -164,7 +170,7 @@ def _tell(
 ) -> None:
     """One view's inputs beside its window, (5,): that it sees, its camera's place, its scale."""
     far = np.sqrt((away_m * away_m).sum())
-    out[0], out[4] = 1.0, NEARNESS * stature_m / far
+    out[0], out[4] = 1.0, NEARNESS * stature_m / min(far, FAR_M)
     for i in range(3):
         out[1 + i] = (turn[i] * away_m).sum() / far
 
@@ -186,17 +192,22 @@ def _middle_m(masks: tuple[Mask | None, Mask | None], rig: Rig) -> Vector | None
 
 
 def standing_m(mask: Mask, camera: Camera) -> Vector:
-    """The middle of a silhouette whose lowest point, along down in its picture, is on the floor."""
+    """The middle of a silhouette whose lowest point, along down in its picture, is on the floor.
+
+    Near the horizon the floor's distance means nothing: the silhouette is taken for no giant's.
+    """
     middle_px = centroid_px(mask)
     eye, middle = centre(camera), ray(camera, middle_px)
     downwards = _downwards(camera, eye + middle)
     rows, columns = np.nonzero(mask)
     along = (np.stack([columns, rows], axis=1) + 0.5 - middle_px) @ downwards
-    lowest = middle_px + downwards * (along.max() + 0.5 * np.abs(downwards).sum())
+    half_px = 0.5 * float(np.abs(downwards).sum())
+    lowest = middle_px + downwards * (along.max() + half_px)
     down = ray(camera, (float(lowest[0]), float(lowest[1])))
     flat = float(np.hypot(down[0], down[2]))
     steep = -down[1] / max(flat, 1e-9)
-    far_m = eye[1] / steep if steep > eye[1] / FAR_M else FAR_M
+    farthest_m = TALLEST_M * camera.K[0][0] / float(np.ptp(along) + 2.0 * half_px)
+    far_m = eye[1] / steep if steep > eye[1] / farthest_m else farthest_m
     found: Vector = eye + middle * (
         max(far_m, NEAR_M) / max(float(np.hypot(middle[0], middle[2])), 1e-9)
     )
