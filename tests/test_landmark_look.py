@@ -84,7 +84,8 @@ def test_forty_metres_off_an_ankle_counts_where_the_size_agrees(
     body_m = somebody(z_m=0.0)
     body_px = project(camera, body_m)
     body_px[[AT["l_ankle"], AT["r_ankle"]]] -= 0.0, rise_px
-    seen = look((shown_by(camera, body_m, joints_px=body_px), None), Rig(640, 480, (camera, camera)), TALL_M, 0.1)
+    shown = shown_by(camera, body_m, joints_px=body_px)
+    seen = look((shown, None), Rig(640, 480, (camera, camera)), TALL_M, 0.1)
     assert seen is not None
     assert seen.inputs[KNOWN - 1] == firm
     assert seen.inputs[KNOWN - 2] == pytest.approx(NEARNESS * TALL_M / FAR_M - 1.0, abs=1e-3)
