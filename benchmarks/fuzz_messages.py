@@ -47,7 +47,6 @@ from common.config.config_file import load
 from common.method import METHODS
 from common.rig.camera import Rig
 from common.video.clips import open_clip
-from common.video.frame_cache import FrameCache
 from integrator import commands, diagnostics, merge, merge_state, pairing
 from integrator.frame_numbers import frame_times
 from integrator.merge_state import Start
@@ -57,6 +56,7 @@ from runtime.live.table import table_of_rows
 from runtime.offline.frame_pairs import openings
 from runtime.offline.lockstep import Decoders, track_clip
 from runtime.offline.performance import Watch
+from runtime.steps.frame_cache import FrameCache
 from viewer import track
 
 WORDS = ("refused", "taken", "handed on", "harm")

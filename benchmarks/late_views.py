@@ -24,9 +24,9 @@ from common.config import config_file
 from common.method import METHODS
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
-from common.video.frame_cache import FrameCache
 from common.video.pictures import Reader
 from runtime.offline.rig_from_person import sightings_of
+from runtime.steps.frame_cache import FrameCache
 from synth.motion.motions import performance
 from synth.person.people import person
 from viewer.landmarks.landmark_sources import outside_sources

@@ -29,11 +29,11 @@ from common.method import METHODS
 from common.rig.camera import Camera
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
-from common.video.frame_cache import FrameCache
 from lab.accuracy.accuracy import compare, picked, summary
 from runtime.live.table import table_of_rows
 from runtime.offline.video_tracking import VideoInput, follow_clip
 from runtime.overrides import overridden
+from runtime.steps.frame_cache import FrameCache
 from runtime.store.pose_arrays import poses
 from viewer.room.background_source import background_of_film
 

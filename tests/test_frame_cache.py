@@ -5,8 +5,8 @@ from itertools import islice
 
 import numpy as np
 
-from common.video.frame_cache import FrameCache, Told
 from common.video.pictures import ALL, Decoded, Ending, Size, Source, Wanted
+from runtime.steps.frame_cache import FrameCache, Told
 
 SIZE = (4, 3)
 BYTES = 3 * SIZE[0] * SIZE[1]

@@ -10,10 +10,10 @@ from common.config.settings import Settings
 from common.method import METHODS, Mode
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
-from common.video.frame_cache import FrameCache
 from lab.bench.bench_figure import Measured, least_s
 from runtime.offline.video_passes import VideoFacts, bodies_of, silhouettes_of
 from runtime.offline.video_tracking import VideoInput, follow_clip
+from runtime.steps.frame_cache import FrameCache
 from viewer.room.background_source import background_of_film
 
 ALONE: Final = (1,)

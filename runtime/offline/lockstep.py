@@ -27,7 +27,6 @@ from common.video.clip_facts import (
 from common.video.clip_sources import Offsets, offsets_of
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
-from common.video.frame_cache import FrameCache
 from integrator import diagnostics, merge_state
 from integrator.frame_numbers import frame_times
 from integrator.measuring import opening_posture
@@ -62,6 +61,7 @@ from runtime.offline.rig_from_person import (
 )
 from runtime.offline.video_tracking import Heard, VideoInput, follow_clip, unseen
 from runtime.sound_clocks import by_ear
+from runtime.steps.frame_cache import FrameCache
 from runtime.steps.method_cameras import (
     refuse_everyone_unmeasured,
     refuse_too_many,

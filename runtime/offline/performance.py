@@ -13,7 +13,6 @@ from calibration.gate.odd_camera import OddCamera
 from common.bus.instant import instant_of
 from common.bus.messages import Body, Guide, View, ViewerNumber
 from common.video.clip_facts import Clip
-from common.video.frame_cache import FrameCache
 from integrator import diagnostics
 from integrator.live_rig.live_calibration import LiveCalibration, Looking
 from integrator.live_rig.rig_solver import SolverAtOnce
@@ -21,6 +20,7 @@ from integrator.people import recognition, several
 from integrator.people.lived_instant import Merged
 from runtime.offline.frame_pairs import instants, share_of
 from runtime.offline.rig_check import Seen, Witness
+from runtime.steps.frame_cache import FrameCache
 from runtime.steps.together import joined, looked
 from runtime.unfinished.unfinished_run import BODIES
 from runtime.unfinished.work import Course

@@ -17,10 +17,10 @@ from common.rig.rig_file import CalibrationError, fitted, is_of_shape
 from common.video.clip_facts import Clip
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
-from common.video.frame_cache import FrameCache
 from common.video.pictures import Reader, Size
 from runtime.offline.rig_from_person import believed_clocks, sightings_of
 from runtime.sound_clocks import by_ear, heard_words
+from runtime.steps.frame_cache import FrameCache
 from viewer.landmarks.landmark_sources import outside_sources
 
 

@@ -26,10 +26,10 @@ from common.video.clip_sources import (
 )
 from common.video.clips import open_clip
 from common.video.decoding import Decoder
-from common.video.frame_cache import FrameCache, Told
 from common.video.pictures import DecoderDied, Undecodable
 from runtime.offline.video_tracking import Followed, Heard, VideoInput, follow_clip, follow_masks
 from runtime.overrides import overridden
+from runtime.steps.frame_cache import FrameCache, Told
 from runtime.store.clip_paths import ClipsFailed
 from runtime.store.other_run import OtherRun, RunOf, refuse_other, run_of
 from runtime.store.pose_arrays import mapped_poses
