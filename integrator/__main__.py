@@ -11,7 +11,7 @@ import msgspec
 from common.bus.bus import Bus, open_hub
 from common.bus.control_messages import Cameras, Command
 from common.bus.instant import Instant
-from common.bus.messages import Guide, ViewerNumber
+from common.bus.messages import Guide, View, ViewerNumber
 from common.bus.process import PAGE_S, Heart, ProcessContext, process, settle
 from common.bus.rate import Pace
 from common.config.settings import Settings
@@ -25,9 +25,12 @@ from integrator.hearing.rig_publisher import RigPublisher
 from integrator.hearing.subscriber import Subscriber
 from integrator.integrator_warmup import warm_up
 from integrator.live_rig.live_calibration import LiveCalibration, is_by_person
+from integrator.live_rig.live_odd_camera import LiveOddCamera
 from integrator.measuring import opening_posture
 from integrator.merge_state import Start, State
 from integrator.people import look_turns, recognition, several
+from integrator.people.lived_instant import Merged
+from integrator.people.own_views import own_views
 from integrator.single.sight import Annotations
 
 LAST_WORDS_S: Final = 1.0
@@ -62,24 +65,29 @@ def run(
     subscriber = Subscriber(bus, viewers, state.period_s, wait_s, *begun, cameras)
     heart.beat("ready", "\n".join(diagnostics.assumed(state)))
     looks = state.scale_source == "assumed" and state.proposes and len(viewers) == 2
-    with LiveCalibration(state, looks=looks, late_s=estate.late_s) as calibration:
+    with (
+        LiveCalibration(state, looks=looks, late_s=estate.late_s) as calibration,
+        LiveOddCamera(state) as odd_camera,
+    ):
         while subscriber.going and not stop.is_set():
             at = _obeyed(at, subscriber.commands(), bus)
             subscriber.late_s = calibration.late_s
             for instant in subscriber.instants():
-                at, of_first = _merged(at, instant, bus, pace)
-                calibration.heard(of_first)
-            room = calibration.changed(at.state.room)
+                at, merged = _merged(at, instant, bus, pace)
+                calibration.heard(merged.of_first)
+                if odd_camera.looks(at.state.room):
+                    odd_camera.heard(_everyones(instant, merged), at.state.room)
+            room = odd_camera.changed(calibration.changed(at.state.room))
             at = at._replace(state=several.with_room(at.state, room))
-            told.rig(room, calibration.late_s)
-            news = (*calibration.news, *subscriber.news)
+            told.rig(room, calibration.late_s, odd_camera.odd)
+            news = (*calibration.news, *odd_camera.news, *subscriber.news)
             if told.is_new(news):
                 heart.hurry()
             _leave(estate, room, calibration, subscriber)
             odd = [*diagnostics.assumed(room), *told.doubts(room), *news]
             heart.beat("running", "\n".join(odd), **subscriber.counts())
     room = at.state.room
-    news = (*told.doubts(room), *calibration.news, *subscriber.news)
+    news = (*told.doubts(room), *calibration.news, *odd_camera.news, *subscriber.news)
     odd = [*diagnostics.warnings(at.noticed, room), *news]
     heart.beat("ended", "\n".join(odd), **subscriber.counts())
 
@@ -95,8 +103,8 @@ def _obeyed(at: Merging, asked: Sequence[Command], bus: Bus) -> Merging:
     return at
 
 
-def _merged(at: Merging, instant: Instant, bus: Bus, pace: Pace) -> tuple[Merging, Instant]:
-    """Merge one instant, and publish its guide and bodies; also the views of the first of these."""
+def _merged(at: Merging, instant: Instant, bus: Bus, pace: Pace) -> tuple[Merging, Merged]:
+    """Merge one instant, and publish its guide and bodies."""
     state, merged = several.step(at.state, instant, at.said)
     late_s = time.monotonic() - instant.newest.clock_s
     turn, due = look_turns.step(at.turn, late_s, state.room.period_s, state.lives)
@@ -105,7 +113,13 @@ def _merged(at: Merging, instant: Instant, bus: Bus, pace: Pace) -> tuple[Mergin
         bus.publish(body)
     pace.done(instant.newest.clock_s, time.monotonic())
     noticed = diagnostics.step(at.noticed, instant, several.present(state, merged))
-    return Merging(state, noticed=noticed, turn=turn), merged.of_first
+    return Merging(state, noticed=noticed, turn=turn), merged
+
+
+def _everyones(instant: Instant, merged: Merged) -> dict[int, dict[int, View]]:
+    """Each person's own views of an instant, by their number and the view's."""
+    views = {n: view for n, view in enumerate(instant.views, 1) if view is not None}
+    return {body.person: own for body, own in own_views(views, merged)}
 
 
 def _leave(

@@ -1,15 +1,15 @@
 """A given rig of which one camera contradicts all others: it is turned back, which is announced."""
 
-import math
 from collections.abc import Sequence
 
 import msgspec
-import numpy as np
 
 from calibration.gate import odd_camera
 from calibration.gate.odd_camera import OddCamera
 from calibration.tracks.camera_clocks import Clocks
 from calibration.tracks.joint_tracks import Sightings
+from common.bus.control_messages import Cameras
+from common.bus.messages import place_in_rig
 from common.npz_file import Facts
 from common.video.clip_facts import Clip
 from common.video.upright_views import filed_rig
@@ -41,7 +41,7 @@ def odd_camera_facts(clip: Clip, odd: OddCamera | None) -> Facts:
     return {
         "odd_camera": {
             "camera": clip.views[odd.place].name,
-            "turned_deg": math.degrees(float(np.linalg.norm(odd.turn))),
+            "turned_deg": odd.turned_deg,
             "apart_mm": 1e3 * odd.apart_m,
             "then_mm": 1e3 * odd.then_m,
             "R": rig.cameras[odd.place].R,
@@ -55,9 +55,17 @@ def odd_camera_warnings(facts: Facts) -> list[str]:
     odd = facts.get("odd_camera")
     if odd is None:
         return []
-    said = (
-        "{camera} looks {turned_deg:.1f} degrees beside its calibration: its sight lines pass "
-        "those of all other cameras by {apart_mm:.0f} mm, by {then_mm:.0f} mm once it is turned, "
-        "as it is in this run; calibrate again, or keep it as calibrated with --trust-calibration"
-    )
-    return [said.format(**odd)]
+    return [
+        odd_camera.report_of(
+            odd["camera"], odd["turned_deg"], odd["apart_mm"], odd["then_mm"], "in this run"
+        )
+    ]
+
+
+def live_odd_camera_facts(clip: Clip, told: Sequence[Cameras]) -> Facts:
+    """The same for a live run, of the rigs that it announced."""
+    last = next((each for each in reversed(told) if each.odd is not None), None)
+    if last is None or last.odd is None:
+        return {}
+    odd = OddCamera(place_in_rig(last.odd.camera), *msgspec.structs.astuple(last.odd)[1:])
+    return odd_camera_facts(msgspec.structs.replace(clip, rig=last.rig), odd)

@@ -17,10 +17,9 @@ from common.config.settings import Settings
 from common.rig.camera import paper_rig, project
 from common.video.clip_facts import Act, Clip, ClipView, Meta, shortfall
 from common.video.clip_sources import ClipError
-from common.video.clips import find_calibration, meta_of, open_clip
+from common.video.clips import find_calibration, meta_of, open_clip, probed
 from common.video.decoding import Decoder
 from common.video.pictures import Ending, Source, Undecodable, VideoInfo
-from common.video.probing import probed
 
 SIZE = (320, 240)
 

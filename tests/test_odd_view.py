@@ -9,9 +9,11 @@ from many_views import around, shown
 
 from calibration.gate.odd_camera import OddCamera
 from calibration.tracks.lateness import Clock
+from common.bus.control_messages import Cameras, TurnedBack
 from common.rig.turned_camera import angle_deg
 from common.video.clip_facts import Clip, ClipView, Meta
 from runtime.odd_view import (
+    live_odd_camera_facts,
     odd_camera_facts,
     odd_camera_of,
     odd_camera_warnings,
@@ -58,3 +60,15 @@ def test_what_was_turned_is_said_with_the_way_back() -> None:
         "cameras by 60 mm, by 10 mm once it is turned, as it is in this run; calibrate again, or "
         "keep it as calibrated with --trust-calibration"
     )
+
+
+def test_a_live_run_has_the_same_facts_of_the_last_camera_that_it_announced() -> None:
+    better = turned_clip(CLIP, ODD)
+    assert better.rig is not None
+    said = TurnedBack(2, ODD.turn, ODD.apart_m, ODD.then_m)
+    plain = Cameras(rig=RIG, scale_source="calibrated")
+    turned = msgspec.structs.replace(plain, rig=better.rig, calibration=1, odd=said)
+    again = msgspec.structs.replace(plain, calibration=2)
+    facts = live_odd_camera_facts(CLIP, [plain, turned, again])
+    assert facts == odd_camera_facts(better, ODD)
+    assert live_odd_camera_facts(CLIP, [plain]) == {}

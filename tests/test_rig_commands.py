@@ -88,7 +88,7 @@ def test_a_board_is_printed_or_looked_for_as_it_was_measured(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     printed = instead(monkeypatch, "calibration.board.board_print.print_board")
-    readable = instead(monkeypatch, "common.video.probing.refuse_unreadable")
+    readable = instead(monkeypatch, "common.video.clip_sources.refuse_unreadable")
     found = SimpleNamespace(cameras=CAMERAS, reprojection_px=0.123, shared_rests=1, floor_s=7.04)
     place = "runtime.offline.rig_of_boards.calibrate_by_videos"
     done = instead(monkeypatch, place, (found, Path("seen.png")))
@@ -121,7 +121,7 @@ def test_nothing_is_printed_or_calibrated_over_what_is_there(
 ) -> None:
     printed = instead(monkeypatch, "calibration.board.board_print.print_board")
     done = instead(monkeypatch, "runtime.offline.rig_of_boards.calibrate_by_videos")
-    instead(monkeypatch, "common.video.probing.refuse_unreadable")
+    instead(monkeypatch, "common.video.clip_sources.refuse_unreadable")
     for name in ("b.pdf", "calibration.json"):
         (here / name).write_text("mine")
     for words in (("--print", "b.pdf"), ("1.mp4", "2.mp4")):

@@ -5,7 +5,7 @@ from local_bus import LocalBus
 from staging import PERIOD_S, RIG
 
 from calibration.gate.sight_clash import Clash
-from common.bus.control_messages import Cameras
+from common.bus.control_messages import Cameras, TurnedBack
 from common.config.settings import Settings
 from common.method import DEFAULT
 from integrator import diagnostics, merge_state
@@ -28,6 +28,14 @@ def test_a_rig_is_told_once_it_is_known_and_once_each_time_that_it_changes() -> 
         (1, "person"),
     ]
     assert {(each.rig, each.late_s) for each in said} == {(RIG, 0.25)}
+
+
+def test_a_rig_that_has_a_camera_turned_back_says_which() -> None:
+    bus, odd = LocalBus(), TurnedBack(3, (0.05, 0.0, 0.0), 0.06, 0.01)
+    heard, told = bus.subscribe(Cameras), RigPublisher(bus)
+    told.rig(KNOWN, 0.0)
+    told.rig(KNOWN._replace(calibration=1), 0.0, odd)
+    assert [each.odd for each in heard.drain()] == [None, odd]
 
 
 def test_a_doubt_is_kept_as_it_was_first_said_until_there_is_another_rig(

@@ -1,5 +1,7 @@
 """Several people: each has one number, and a body where they stand."""
 
+from pathlib import Path
+
 import msgspec
 import numpy as np
 import pytest
@@ -11,11 +13,17 @@ from calibration.gate import rig_agreement
 from common.body.proportions import thesis_bdp
 from common.bus.control_messages import Command
 from common.bus.messages import Agreement, Body
+from common.config.settings import Settings
 from integrator.measuring.known_body import Measured, Unmeasured
 from integrator.people import recognition, several
 from integrator.people.lived_instant import KEPT_S
 from integrator.people.recognition import BORN_S, State
+from lab.accuracy.identity import gaps_of, presences
+from runtime.offline.lockstep import Decoders, track_clip
+from runtime.store.pose_arrays import poses
 from runtime.unfinished.state_codec import packed, unpacked
+from synth.scene.people_scene import LEAVING_TAKE
+from synth.scene.scene_clips import SceneSet, write_scenes
 
 LEFT, RIGHT = shown(LEFT_M, (0, 0), RED), shown(RIGHT_M, (1, 1), BLUE)
 AFTER_BIRTH = round(BORN_S * 15) + 1
@@ -217,3 +225,21 @@ def test_no_more_people_are_known_than_the_bound(monkeypatch: pytest.MonkeyPatch
     crowd = Crowd()
     crowd.see(LEFT)
     assert [body.person for body in crowd.last(2 * AFTER_BIRTH, LEFT, RIGHT)] == [1]
+
+
+@pytest.mark.slow
+def test_who_leaves_a_scene_and_comes_back_has_the_old_number_and_the_other_keeps_theirs(
+    tmp_path: Path,
+) -> None:
+    """Before three cameras: one is away for 2.2 s."""
+    wanted = SceneSet(2, 10.0, 1, 90_001, 3, first_take=LEAVING_TAKE)
+    (clip,) = write_scenes(tmp_path, wanted, (240, 180))
+    with Decoders() as decoders:
+        tracked = track_clip(Settings(clip=str(clip), people="all", size="240x180"), decoders)
+    with np.load(clip / "truth.npz") as truth:
+        found = presences(gaps_of(poses(tracked.bodies), dict(truth)), 15)
+    stayed, before, after = sorted(found, key=lambda one: (one.first > 9 or one.last < 149, one))
+    assert (stayed.first, stayed.last, before.who) == (9, 149, after.who)
+    assert 1.0 < (after.first - before.last) / 15 < KEPT_S
+    assert stayed.number != before.number == after.number is not None
+    assert min(one.share for one in found) > 0.7

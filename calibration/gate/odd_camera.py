@@ -62,6 +62,28 @@ class OddCamera(NamedTuple):
     then_m: float
     """The same once it is turned."""
 
+    @property
+    def turned_deg(self) -> float:
+        """By how much it is turned."""
+        return math.degrees(float(np.linalg.norm(self.turn)))
+
+
+def report_of(camera: str, turned_deg: float, apart_mm: float, then_mm: float, since: str) -> str:
+    """What a user is shown about a camera that was turned back.
+
+    Args:
+        camera: Its name.
+        turned_deg: How far it looks beside its calibration.
+        apart_mm: Gap between its sight lines and the others', as calibrated.
+        then_mm: The same once it is turned.
+        since: Where it is turned: "in this run".
+    """
+    return (
+        f"{camera} looks {turned_deg:.1f} degrees beside its calibration: its sight lines pass "
+        f"those of all other cameras by {apart_mm:.0f} mm, by {then_mm:.0f} mm once it is turned, "
+        f"as it is {since}; calibrate again, or keep it as calibrated with --trust-calibration"
+    )
+
 
 def odd_camera(rig: Rig, everyone: Sequence[Sightings], clocks: Clocks) -> OddCamera | None:
     """The camera of three or more that is turned against the others; None: there is none.

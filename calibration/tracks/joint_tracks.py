@@ -17,6 +17,9 @@ LEAST_SURE: Final = 0.4
 """Mean confidence of a view's landmarks below which a frame does not count."""
 MOST_FRAMES, LONGEST = 80, 360
 """Number of moments used per clip, as neighbours err alike; and for a long clip."""
+SEEN_AS_LONG: Final = 0.5
+"""Share of the instants of the person seen longest that another needs for their evidence to
+count."""
 UPRIGHT: Final = math.cos(math.radians(60.0))
 """Cosine of the trunk's lean in the picture from which on a frame does not count for a rig: a
 lying person has no soles on the floor, and is detected less well."""
@@ -58,6 +61,23 @@ class Sightings(NamedTuple):
     def pair(self, one: int, other: int) -> Sighting:
         """Two of the views."""
         return Sighting(self.tracks[one], self.tracks[other], self.size_px)
+
+
+def longest_seen(everyone: Iterable[Sightings]) -> tuple[Sightings, ...]:
+    """The people whose evidence about a rig counts, who was seen longest first.
+
+    Args:
+        everyone: All views of each person; two or more.
+    """
+    each = sorted(everyone, key=_instants, reverse=True)
+    least = SEEN_AS_LONG * max(map(_instants, each), default=0)
+    return tuple(seen for seen in each if _instants(seen) >= least)
+
+
+def _instants(seen: Sightings) -> int:
+    """Number of a person's frames in the view that shows them most often but one: two judge."""
+    shown = [int((track.confidence > 0.0).any(axis=1).sum()) for track in seen.tracks]
+    return sorted(shown)[-2]
 
 
 Row = tuple[float, Vector, Vector, float, float]

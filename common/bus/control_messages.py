@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 import msgspec
 
-from common.bus.messages import Message, ScaleSource, ViewerNumber
+from common.bus.messages import Message, Point, ScaleSource, ViewerNumber
 from common.rig.camera import Rig
 
 
@@ -32,6 +32,18 @@ class Pulse(Message, frozen=True, kw_only=True):
     memory_mb: float = 0.0
 
 
+class TurnedBack(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A camera that contradicted all others as calibrated."""
+
+    camera: ViewerNumber
+    turn: Point
+    """Rotation vector of the scene in its axes, radians, from the calibration to where it looks."""
+    apart_m: float
+    """Gap between its sight lines and the others' as calibrated, metres."""
+    then_m: float
+    """The same once it is turned."""
+
+
 class Cameras(Message, frozen=True, kw_only=True):
     """The rig that a run uses, published once it is known and again at each change."""
 
@@ -41,6 +53,8 @@ class Cameras(Message, frozen=True, kw_only=True):
     """Number of changes so far: bodies computed with this rig carry the same number."""
     late_s: float = 0.0
     """Seconds by which the times of view 2 are set back."""
+    odd: TurnedBack | None = None
+    """The camera that this rig has turned back; None: none."""
 
 
 class Ended(Message, frozen=True, kw_only=True):

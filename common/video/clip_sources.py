@@ -13,6 +13,7 @@ COMPANIONS: Final = {".json", ".npz", ".txt", ".csv", ".toml", ".md", ".png", ".
 """Suffixes of files that may stand beside `cam1.*` and are no videos."""
 CLIP_CAMERAS: Final = tuple(f"cam{n + 1}" for n in range(MOST_VIEWS))
 """Names of a clip folder's cameras, by their numbers."""
+AVI_HEAD: Final = b"RIFF"
 NOTHING: Final = "there is nothing to look at: set clip, or cameras.cam1 with source or device"
 """The message for settings without a clip or camera."""
 
@@ -153,3 +154,36 @@ def companions_folder(settings: Settings, named: list[ViewSource]) -> Path:
         return Path(settings.clip)
     files = [Path(view.source) for view in named if is_recorded(view.source)]
     return files[0].parent if files else Path()
+
+
+def refuse_unreadable(path: Path) -> None:
+    """Refuse a file that does not exist, is empty, or cannot be read.
+
+    Raises:
+        ClipError: When it cannot be used.
+    """
+    if path.is_dir():
+        raise ClipError(f"{path} is a folder: name a file in it")
+    if not path.is_file():
+        raise ClipError(f"there is no file {path}: check the path")
+    try:
+        with path.open("rb") as file:
+            empty = not file.read(1)
+    except OSError as error:
+        raise ClipError(
+            f"cannot read {path}: {error.strerror}; see that you may read it (chmod u+r)"
+        ) from error
+    if empty:
+        raise ClipError(f"{path} is empty: copy or record it again")
+
+
+def refuse_a_lost_head(path: Path) -> None:
+    """Refuse an AVI with a damaged header: OpenCV decodes it, but makes up rate and number of
+    frames.
+
+    Raises:
+        ClipError: When it is one.
+    """
+    with path.open("rb") as file:
+        if path.suffix.lower() == ".avi" and file.read(4) != AVI_HEAD:
+            raise ClipError(f"{path} is no AVI from its first byte on: copy or record it again")

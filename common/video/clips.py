@@ -24,12 +24,13 @@ from common.video.clip_sources import (
     ViewSource,
     companions_folder,
     offsets_of,
+    refuse_a_lost_head,
+    refuse_unreadable,
     sources_of,
 )
 from common.video.decoding import Decoder
 from common.video.frame_times import timed
-from common.video.pictures import VideoInfo, is_recorded
-from common.video.probing import probed, refuse_no_video
+from common.video.pictures import DecoderDied, Source, Undecodable, VideoInfo, is_recorded
 from common.video.shared_rate import at_one_rate
 from common.video.upright_views import filed_rig, upright_views
 from common.video.view_pair import refuse_missing, refuse_same_source
@@ -161,6 +162,36 @@ def _view(named: ViewSource, settings: Settings, meta: Meta, decoder: Decoder) -
 def _told_s(meta: Meta, named: ViewSource) -> tuple[float, ...]:
     """Capture times of a file's frames, from the files beside it."""
     return meta.capture_s.get(named.name, ()) if is_recorded(named.source) else ()
+
+
+def probed(source: Source, decoder: Decoder) -> VideoInfo:
+    """The facts of a file or camera.
+
+    Raises:
+        ClipError: When it does not exist, cannot be read, is empty, or has no picture.
+    """
+    if is_recorded(source):
+        refuse_unreadable(Path(source))
+    try:
+        info = decoder.probe(source)
+    except (Undecodable, DecoderDied) as error:
+        raise ClipError(str(error)) from error
+    if is_recorded(source):
+        refuse_a_lost_head(Path(source))
+    return info
+
+
+def refuse_no_video(source: Source, frames: int, fps: float) -> None:
+    """Refuse a single picture, or what has no frame rate, in the place of a video.
+
+    Raises:
+        ClipError: When it is one.
+    """
+    if fps > 0:
+        return
+    if frames == 1:
+        raise ClipError(f"{source} is one picture, no video: name a video")
+    raise ClipError(f"{source} has no frame rate: set fps in a meta.json beside it")
 
 
 def _refuse_another_scene(named: ViewSource, plate: VideoInfo, info: VideoInfo) -> None:

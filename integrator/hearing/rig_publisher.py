@@ -1,7 +1,7 @@
 """Publishes the run's rig and warnings about views, each once."""
 
 from common.bus.bus import Bus
-from common.bus.control_messages import Cameras
+from common.bus.control_messages import Cameras, TurnedBack
 from integrator import diagnostics
 from integrator.merge_state import State
 
@@ -16,8 +16,14 @@ class RigPublisher:
         self._doubt = ""
         self._apart: list[str] = []
 
-    def rig(self, state: State, late_s: float) -> None:
-        """Publish the rig as soon as it is known, and each later one."""
+    def rig(self, state: State, late_s: float, odd: TurnedBack | None = None) -> None:
+        """Publish the rig as soon as it is known, and each later one.
+
+        Args:
+            state: With the rig.
+            late_s: Time by which the times of view 2 are set back.
+            odd: The camera that it has turned back.
+        """
         if state.rig is not None and state.calibration > self._calibration:
             self._bus.publish(
                 Cameras(
@@ -25,6 +31,7 @@ class RigPublisher:
                     scale_source=state.scale_source,
                     calibration=state.calibration,
                     late_s=late_s,
+                    odd=odd,
                 )
             )
             self._calibration, self._doubt = state.calibration, ""

@@ -26,7 +26,7 @@ class Stand(msgspec.Struct, frozen=True):
     """Packed rows, with the reported times."""
 
 
-class Job(msgspec.Struct, frozen=True):
+class Job(msgspec.Struct, frozen=True, tag=True):
     """Both views, and the rig in use."""
 
     size_px: tuple[int, int]

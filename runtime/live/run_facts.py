@@ -8,6 +8,7 @@ from runtime.live.launch import Heard
 from runtime.live.recorded import SoFar
 from runtime.live.screen import warnings_of
 from runtime.moved_facts import facts_of_moves
+from runtime.odd_view import live_odd_camera_facts
 from runtime.store.other_run import run_of
 from runtime.store.runs import NO_PERSON_SEEN
 
@@ -28,6 +29,7 @@ def facts_of(heard: Heard, clip: Clip, seconds: float, so_far: SoFar) -> Facts:
         "seconds": {"all": round(seconds, 3)},
         "scale_source": source,
         **_calibration(heard),
+        **live_odd_camera_facts(clip, heard.cameras),
         **facts_of_moves(so_far.moves),
         "posture": so_far.posture,
         **_postures(so_far),

@@ -7,8 +7,6 @@ from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import contextmanager
 from typing import Final, NamedTuple
 
-import msgspec
-
 from calibration.gate.odd_camera import OddCamera
 from common.bus.instant import instant_of
 from common.bus.messages import Body, Guide, View, ViewerNumber
@@ -18,6 +16,7 @@ from integrator.live_rig.live_calibration import LiveCalibration, Looking
 from integrator.live_rig.rig_solver import SolverAtOnce
 from integrator.people import recognition, several
 from integrator.people.lived_instant import Merged
+from integrator.people.own_views import own_views
 from runtime.offline.frame_pairs import instants, share_of
 from runtime.offline.rig_check import Seen, Witness
 from runtime.steps.frame_cache import FrameCache
@@ -114,7 +113,7 @@ def performed(
             going, reports, merged = _stepped(going, frames, calibration, pool)
             for body in merged.bodies:
                 bodies.append(body)
-            for body, own in evidence(reports, merged):
+            for body, own in own_views(reports, merged):
                 witness(frames, own, body)
             if watch:
                 watch.each(frames, reports, merged.bodies)
@@ -178,32 +177,6 @@ def _stepped(
         spent=spent,
     )
     return going, reports, merged
-
-
-def evidence(reports: dict[int, View], merged: Merged) -> list[tuple[Body, dict[int, View]]]:
-    """What is evidence about the rig: each person in the views where no other is close to them, as
-    of two who are close one view may have shown the other for a moment."""
-    if not merged.of_each:  # one person is followed, or no person is known
-        return [(merged.bodies[0], reports)]
-    return [
-        (body, {n: _alone(own.views[n - 1], report) for n, report in reports.items()})
-        for body, own in zip(merged.bodies, merged.of_each, strict=True)
-    ]
-
-
-def _alone(own: View | None, whole: View) -> View:
-    """A person's view; without people where another is close to them."""
-    if own is not None and _is_apart(own, whole):
-        return own
-    return msgspec.structs.replace(whole, people=())
-
-
-def _is_apart(own: View, whole: View) -> bool:
-    """Whether the person of a view touches no other one there."""
-    person = own.person
-    return person is not None and not any(
-        person.box.meets(other.box) for other in whole.people if other.track != person.track
-    )
 
 
 def _saved(

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import msgspec
 
 from calibration.tracks.camera_clocks import Clocks, clocks_of
-from calibration.tracks.joint_tracks import Row, Sightings, row_of, track_of_rows
+from calibration.tracks.joint_tracks import Row, Sightings, longest_seen, row_of, track_of_rows
 from calibration.tracks.lateness import Clock
 from common.bus.messages import Body, View, ViewerNumber
 from common.npz_file import Facts
@@ -28,9 +28,6 @@ MOST_PEOPLE: Final = 12
 """Number of people whose observations are kept, so that a long run's do not grow: each new person
 has another number. Twice as many as are known at once."""
 NONE: Final[Offsets] = {}
-SEEN_AS_LONG: Final = 0.5
-"""Share of the instants of the person seen longest that another needs for their evidence to
-count."""
 
 
 class Seen(NamedTuple):
@@ -77,20 +74,12 @@ class Witness:
             )
             for rows in self.seen.rows.values() or [{}]
         ]
-        each.sort(key=_instants, reverse=True)
-        least = SEEN_AS_LONG * _instants(each[0])
-        return tuple(seen for seen in each if _instants(seen) >= least)
+        return longest_seen(each)
 
 
 def _most_rows(rows: Mapping[int, Sequence[Row]]) -> int:
     """Number of rows of the view that has most."""
     return max(map(len, rows.values()), default=0)
-
-
-def _instants(seen: Sightings) -> int:
-    """Number of a person's frames in the view that shows them most often but one: two judge."""
-    shown = [int((track.confidence > 0.0).any(axis=1).sum()) for track in seen.tracks]
-    return sorted(shown)[-2]
 
 
 def clocks_seen(clip: Clip, witness: Witness) -> Clocks:

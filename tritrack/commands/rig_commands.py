@@ -128,7 +128,7 @@ def board(
     Example: tritrack calibrate board cam1.mp4 cam2.mp4 --out clips/calibration.json
     """
     from calibration.board.board_print import print_board
-    from common.video.probing import refuse_unreadable
+    from common.video.clip_sources import refuse_unreadable
     from runtime.offline.rig_of_boards import Shown
 
     if print_ is None and not videos:

@@ -28,7 +28,7 @@ def start(
     Example: tritrack start --runs runs
     """
     refuse_without("page", "websockets")
-    from common.video.probing import refuse_unreadable
+    from common.video.clip_sources import refuse_unreadable
     from tritrack.starting.start import start as serve_start
     from tritrack.starting.start_desk import Given
 

@@ -11,6 +11,7 @@ from animator.start.sections import Cameras, ShownCamera
 from calibration.board.board_progress import HOLD_S, words_of
 from common.config.picture_size import size_within
 from common.video.clip_sources import ClipError
+from common.video.clips import probed
 from common.video.decoding import Decoder
 from common.video.pictures import (
     Decoded,
@@ -21,7 +22,6 @@ from common.video.pictures import (
     VideoInfo,
     is_recorded,
 )
-from common.video.probing import probed
 from tritrack.machine_cameras.board_watch import BoardWatch
 from tritrack.machine_cameras.camera_list import FoundCamera, no_camera
 from tritrack.marking.stills import Running, jpeg_of

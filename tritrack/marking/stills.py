@@ -16,10 +16,9 @@ from animator.marking.sheet import Pictures
 from common.config.picture_size import size_within
 from common.config.settings import Settings
 from common.video.clip_sources import NOTHING, ClipError, ViewSource, sources_of
-from common.video.clips import SAME_ASPECT
+from common.video.clips import SAME_ASPECT, probed
 from common.video.decoding import Decoder
 from common.video.pictures import Decoded, DecoderDied, Image, Size, Source, Wanted, is_camera
-from common.video.probing import probed
 from runtime.terminal import bar
 
 MOST_STILLS: Final = 100

@@ -12,9 +12,9 @@ import numpy as np
 from common.body.body import Vector
 from common.bus.rate import wait_until
 from common.video.camera_file import SUFFIX, CameraFile, missing_of, rate_of
+from common.video.clips import probed
 from common.video.decoding import Decoder
 from common.video.pictures import Decoded, DecoderDied, Image, Source, Undecodable, is_recorded
-from common.video.probing import probed
 from tritrack.recording_cameras.motion_delay import change, small_of
 
 USUAL_HZ: Final = 30.0

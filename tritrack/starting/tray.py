@@ -12,9 +12,9 @@ from common.bus.messages import MOST_VIEWS
 from common.sound.sound_of_video import RATE_HZ, sound_of
 from common.sound.sound_offset import delay_of
 from common.video.clip_sources import ClipError
+from common.video.clips import probed, refuse_no_video
 from common.video.decoding import Decoder
 from common.video.pictures import DecoderDied, VideoInfo
-from common.video.probing import probed, refuse_no_video
 from runtime.sound_clocks import MOST_S
 from tritrack.starting.job_plan import name_of_files, tasks_of
 from tritrack.starting.uploads import Upload
