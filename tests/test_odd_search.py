@@ -1,9 +1,12 @@
 """When a live run asks which camera is odd, of what it has seen."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from many_views import around, shown
 from sights_as_views import instants_of, without
+from staging import changed
 
 from calibration.gate.odd_camera import OddCamera
 from common.bus.instant import Instant
@@ -55,6 +58,15 @@ def test_who_is_seen_by_one_view_alone_is_no_evidence() -> None:
     assert (jobs, state.shown_s, state.rows) == ([], 0.0, {})
     by_two = [without(instant, (3,)) for instant in instants_of(SHOWN, ASKS_S[0] + 1.0)]
     assert len(after(State(0), by_two)[1]) == 1
+
+
+@pytest.mark.parametrize("told", [{"landmarks": None}, {"carried": True}])
+def test_frames_that_came_too_late_to_be_looked_into_are_no_evidence(told: dict[str, Any]) -> None:
+    late = [
+        Instant(tuple(changed(view, **told) for view in instant.views if view is not None))
+        for instant in instants_of(SHOWN, ASKS_S[0] + 1.0)
+    ]
+    assert after(State(0), late) == (State(0, last_s=(11.0 - 1 / HZ,) * 3), [])
 
 
 def test_nothing_is_asked_while_an_answer_is_awaited() -> None:

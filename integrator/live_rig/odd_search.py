@@ -34,7 +34,7 @@ class State(NamedTuple):
     last_s: tuple[float, ...] = ()
     """Time of each view's last row."""
     shown_s: float = 0.0
-    """How long two views or more showed a person."""
+    """How long two views or more looked at a person."""
     asked: int = 0
     waits: bool = False
     """A request is not answered yet."""
@@ -78,8 +78,7 @@ def step(
     rows, shown = dict(state.rows), False
     for number, views in people.items():
         fresh = {n: view for n, view in views.items() if view.captured_s > last_s[n - 1]}
-        seen = [view for view in fresh.values() if view.person is not None]
-        if len(seen) > 1:
+        if sum(map(_is_looked_at, fresh.values())) > 1:
             shown = True
             rows[number] = _with_rows(rows.get(number, ((),) * cameras), fresh)
     rows = _bounded(rows)
@@ -103,6 +102,12 @@ def answered(state: State, answer: OddAnswer) -> tuple[State, OddCamera | None]:
     if was_stale or not isinstance(answer, OddCamera):
         return state, None
     return state._replace(turns=state.turns + 1), answer
+
+
+def _is_looked_at(view: View) -> bool:
+    """Whether a view has landmarks of this very frame: a late one has none, or carries them on."""
+    person = view.person
+    return person is not None and person.landmarks is not None and not person.carried
 
 
 def _with_rows(rows: Rows, views: Mapping[int, View]) -> Rows:
