@@ -116,6 +116,16 @@ def clip(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="session")
+def three_views(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A clip of three cameras: somebody squats."""
+    from synth.write import ClipSet, write_set
+
+    wanted = ClipSet("postures", seed=61_001, postures=("squat",), cameras=3)
+    folder = made_once(tmp_path_factory, "three", lambda out: write_set(out, wanted, (160, 120)))
+    return next(folder.glob("*/meta.json")).parent
+
+
+@pytest.fixture(scope="session")
 def tracked_clip(clip: Path, tmp_path_factory: pytest.TempPathFactory) -> "Tracked":
     """What is made of that clip by default, by both views."""
 

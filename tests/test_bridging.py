@@ -132,8 +132,8 @@ def test_each_body_is_handed_on_in_the_protocol_that_is_asked_for(
     monkeypatch.setattr(senders, "marker_outlet", lambda: None)
     found = bridging.bridge(protocol, "tcp/10.0.0.1:7447", "attic", "127.0.0.1:9000", heard)
     assert (found, len(packets)) == (sent, sent)
-    there = ("tcp/10.0.0.1:7447", "attic")
-    assert asked[:2] == [(there, {"keys": ""}), (there, {"kind": Posture, "keys": ""})]
+    there, waits = ("tcp/10.0.0.1:7447", "attic"), {"wait_s": WAIT_S, "keys": ""}
+    assert asked[:2] == [(there, waits), (there, {"kind": Posture, **waits})]
     assert isinstance(heard.file, io.StringIO)
     assert heard.file.getvalue() == (
         f"waiting for a run at tcp/10.0.0.1:7447 (room attic), at most {WAIT_S:.0f} s\n"
@@ -230,9 +230,17 @@ def test_no_thread_waits_where_no_run_answers(monkeypatch: pytest.MonkeyPatch) -
     assert not [one for one in threading.enumerate() if one.name == "postures"]
 
 
+IMPATIENT = (
+    "from functools import partial; from runtime.bridges import bridging; "
+    "bridging.bridge = partial(bridging.bridge, wait_s=1.0); "
+    "from tritrack.__main__ import main; main()"
+)
+"""The command, which waits for a second and not for a minute."""
+
+
 @pytest.mark.slow
 def test_a_bridge_that_finds_no_run_ends_with_its_code() -> None:
-    asked = [sys.executable, "-m", "tritrack", "bridge", "osc", "--endpoint", "tcp/127.0.0.1:1"]
+    asked = [sys.executable, "-c", IMPATIENT, "bridge", "osc", "--endpoint", "tcp/127.0.0.1:1"]
     ended = subprocess.run(asked, capture_output=True, text=True, check=False, timeout=120)
-    assert "error: nobody answers at tcp/127.0.0.1:1 after 60 s" in ended.stderr
+    assert "error: nobody answers at tcp/127.0.0.1:1 after 1 s" in ended.stderr
     assert ended.returncode == 2, ended.stderr

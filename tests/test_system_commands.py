@@ -5,6 +5,7 @@ import json
 import os
 import re
 import resource
+import shutil
 import socket
 import subprocess
 import sys
@@ -13,8 +14,9 @@ from collections.abc import Callable
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
+import msgspec
 import numpy as np
 import pytest
 import typer
@@ -26,6 +28,8 @@ from common.config.settings import Settings
 from common.rig.camera import paper_rig
 from common.rig.rig_file import load_rig
 from runtime.live import session
+from runtime.offline import batch
+from runtime.offline.lockstep import Tracked, track_clip
 from runtime.store.other_run import run_of
 from runtime.store.past_run import open_run
 from runtime.store.runs import write_run
@@ -67,6 +71,8 @@ class Commands:
         return Ended(int(ended.value.code or 0), said.out, said.err)
 
 
+OF_THE_PERSON = ("no calibration", "other size")
+"""Of `WORKED_WITH` those whose cameras are calibrated by their person."""
 MOST_LETTERS = 55
 """Of a command's first sentence: more are cut where commands are listed."""
 
@@ -84,6 +90,20 @@ def no_process(monkeypatch: pytest.MonkeyPatch) -> None:
         raise AssertionError("a process was started")
 
     monkeypatch.setattr(session, "run", started)
+
+
+@pytest.fixture
+def as_tracked(monkeypatch: pytest.MonkeyPatch, tracked_clip: Tracked) -> list[Settings]:
+    """Every clip that is tracked gives what was made of `clip`; the settings that each was asked
+    for."""
+    asked: list[Settings] = []
+
+    def track(settings: Settings, *_: object, **__: object) -> Tracked:
+        asked.append(settings)
+        return tracked_clip
+
+    monkeypatch.setattr(batch, "track_clip", track)
+    return asked
 
 
 def every_command() -> list[list[str]]:
@@ -291,21 +311,27 @@ def test_unknown_and_ill_typed_settings_are_refused(
 def test_what_can_be_worked_with_runs_on_with_one_line(
     tritrack: Commands, clip: Path, tmp_path: Path, how: str
 ) -> None:
+    """Beside it JSON stands alone on stdout."""
     spoil, warning = WORKED_WITH[how]
     spoil(copied(clip, tmp_path / "clip"))
-    said = tritrack("track", tmp_path / "clip", "--out", tmp_path / "out")
+    said = tritrack("track", tmp_path / "clip", "--out", tmp_path / "out", "--json")
     assert (said.code, said.errors) == (0, [])
     told = [line for line in said.warnings if re.search(warning, line)]
     assert len(told) == 1
     summary = json.loads((tmp_path / "out" / "clip" / "summary.json").read_text())
+    alone = json.loads(said.out)["clips"]["clip"]
+    assert alone["warnings"] == summary["warnings"]
+    assert alone["scale_source"] == ("person" if how in OF_THE_PERSON else "calibrated")
+    assert len(said.warnings) == len(alone["warnings"])
     named = [" ".join(f"warning: clip: {text}".split()) for text in summary["warnings"]]
     assert told[0] in named
     with np.load(tmp_path / "out" / "clip" / "poses.npz", allow_pickle=False) as found:
         assert np.isfinite(found["joints_m"]).all(axis=(1, 2)).sum() > 30
 
 
-@pytest.mark.slow
-def test_a_good_clip_gives_no_warning(tritrack: Commands, clip: Path, tmp_path: Path) -> None:
+def test_a_good_clip_gives_no_warning(
+    tritrack: Commands, as_tracked: list[Settings], clip: Path, tmp_path: Path
+) -> None:
     said = tritrack("track", clip, "--out", tmp_path)
     assert (said.code, said.out) == (0, "")
     told = f"1 clip tracked, written to {tmp_path}; believed in 100% of the frames with a person\n"
@@ -373,23 +399,13 @@ def test_a_clip_that_shows_nobody_is_not_followed_and_is_written(
     assert (tmp_path / "out" / "clip" / "poses.npz").is_file()
 
 
-@pytest.mark.slow
-def test_json_stands_alone_on_stdout(tritrack: Commands, clip: Path, tmp_path: Path) -> None:
-    folder = copied(clip, tmp_path / "clip")
-    WORKED_WITH["no calibration"][0](folder)
-    said = tritrack("track", folder, "--out", tmp_path / "out", "--json")
-    told = json.loads(said.out)["clips"]["clip"]
-    assert told["scale_source"] == "person"
-    assert len(said.warnings) == len(told["warnings"]) == 1
-
-
-@pytest.mark.slow
 def test_a_pattern_may_catch_calibration_json_too(
-    tritrack: Commands, clip: Path, tmp_path: Path
+    tritrack: Commands, as_tracked: list[Settings], clip: Path, tmp_path: Path
 ) -> None:
     """`tritrack track clips/*`."""
     said = tritrack("track", *sorted(clip.parent.iterdir()), "--out", tmp_path)
     assert said.code == 0
+    assert [settings.clip for settings in as_tracked] == [str(clip)]
     assert len(said.warnings) == 1
     assert "calibration.json is neither a clip folder nor a settings file" in said.warnings[0]
     alone = tritrack("track", clip.parent / "calibration.json", "--out", tmp_path)
@@ -404,20 +420,27 @@ def test_two_runs_never_share_a_folder(tritrack: Commands, clip: Path, tmp_path:
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.slow
 def test_a_bad_clip_does_not_keep_the_others_from_it(
-    tritrack: Commands, clip: Path, tmp_path: Path
+    tritrack: Commands,
+    monkeypatch: pytest.MonkeyPatch,
+    tracked_clip: Tracked,
+    clip: Path,
+    tmp_path: Path,
 ) -> None:
     (tmp_path / "hollow").mkdir()
+
+    def track(settings: Settings, *given: Any, **named: Any) -> Tracked:
+        return tracked_clip if settings.clip == str(clip) else track_clip(settings, *given, **named)
+
+    monkeypatch.setattr(batch, "track_clip", track)
     said = tritrack("track", tmp_path / "hollow", clip, "--out", tmp_path / "out")
     assert said.code == 2
     assert "1 of 2 clips could not be tracked" in said.errors[-1]
     assert (tmp_path / "out" / clip.name / "poses.npz").is_file()
 
 
-@pytest.mark.slow
 def test_settings_hold_unless_the_command_line_says_otherwise(
-    tritrack: Commands, clip: Path, tmp_path: Path
+    tritrack: Commands, as_tracked: list[Settings], clip: Path, tmp_path: Path
 ) -> None:
     small = toml(tmp_path / "small.toml", f'clip = "{clip}"\nsize = "80x60"\nmode = "paper"\n')
 
@@ -425,6 +448,7 @@ def test_settings_hold_unless_the_command_line_says_otherwise(
         assert tritrack("track", small, "--out", tmp_path, *options).code == 0
         told = json.loads((tmp_path / "small" / "summary.json").read_text())
         assert told["clip"] == "small"
+        assert told["settings"] == msgspec.to_builtins(as_tracked[-1])
         return told["settings"]["size"], told["settings"]["mode"]
 
     assert resolved() == ("80x60", "paper")
@@ -437,16 +461,18 @@ def test_settings_hold_unless_the_command_line_says_otherwise(
 @pytest.mark.parametrize("view", [1, 2])
 def test_one_view_is_enough(tritrack: Commands, clip: Path, tmp_path: Path, view: int) -> None:
     """A run with one viewer; rows are counted by its own frames."""
-    folder = copied(clip, tmp_path / "alone")
+    both = copied(clip, tmp_path / "both")
+    refilmed(both, lambda film: film[:40])
+    folder = Path(shutil.copytree(both, tmp_path / "alone"))
     (folder / f"cam{3 - view}.avi").unlink()
     refused = tritrack("track", folder, "--out", tmp_path / "out")
     assert refused.code == 2
     assert f"and no cam{3 - view}.*" in refused.errors[0]
-    for path in (clip, folder):
+    for path in (both, folder):
         given = ("track", path, "--views", str(view), "--out", tmp_path / "out")
         assert tritrack(*given).code == 0
         with np.load(tmp_path / "out" / path.name / "poses.npz", allow_pickle=False) as found:
-            assert found["frame"].tolist() == list(range(69))
+            assert found["frame"].tolist() == list(range(40))
             assert set(found["views"]) == {"none", str(view)}
             assert np.isfinite(found["joints_m"][12:]).all()
 
@@ -527,14 +553,13 @@ def test_a_live_run_takes_the_place_of_the_last_one_of_the_same_or_by_force(
 
 @pytest.mark.slow
 def test_what_is_replayed_says_where_it_is_written(
-    tritrack: Commands, clip: Path, tmp_path: Path
+    tritrack: Commands, recorded_run: Path, tmp_path: Path
 ) -> None:
     pytest.importorskip("mcap", reason="pip install 'tritrack[mcap]'")
-    assert tritrack("track", clip, "--record", "--out", tmp_path).code == 0
     out = tmp_path / "again"
-    said = tritrack("replay", tmp_path / clip.name, "--out", out)
+    said = tritrack("replay", recorded_run, "--out", out)
     assert said.err.strip().endswith(f"; written to {out}")
-    assert "written" not in tritrack("replay", tmp_path / clip.name).err
+    assert "written" not in tritrack("replay", recorded_run).err
 
 
 def test_calibration_is_a_table_and_json(tritrack: Commands, tmp_path: Path) -> None:
@@ -689,20 +714,20 @@ def test_made_up_clips_are_told_as_json(tritrack: Commands, tmp_path: Path) -> N
 
 
 @pytest.mark.slow
-def test_a_full_disk_leaves_no_broken_file(clip: Path, tmp_path: Path) -> None:
-    """Nothing may grow beyond 20 kB here; the poses of 69 frames need 120. What fits is kept."""
+def test_a_full_disk_leaves_no_broken_file(clip: Path, recorded_run: Path, tmp_path: Path) -> None:
+    """Nothing may grow beyond 20 kB here; the poses of 69 frames need 120. What fits is kept.
 
-    def tracked(out: str, limit: int) -> subprocess.CompletedProcess[str]:
-        return subprocess.run(
-            [sys.executable, "-m", "tritrack", "track", str(clip), "--out", str(tmp_path / out)],
-            capture_output=True,
-            text=True,
-            check=False,
-            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)),
-        )
+    What is compiled would not fit either: the run before has done that.
+    """
+    assert (recorded_run / "poses.npz").stat().st_size > 20_000
 
-    assert tracked("in", resource.RLIM_INFINITY).returncode == 0  # compiles what is not yet
-    ended = tracked("out", 20_000)
+    ended = subprocess.run(
+        [sys.executable, "-m", "tritrack", "track", str(clip), "--out", str(tmp_path / "out")],
+        capture_output=True,
+        text=True,
+        check=False,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000)),
+    )
     assert ended.returncode == 2
     assert f"error: cannot write {tmp_path / 'out' / clip.name}: File too large" in ended.stderr
     assert "Traceback" not in ended.stderr

@@ -20,7 +20,13 @@ ENDS_S = 2.0
 
 
 def bridge(
-    protocol: Kind, endpoint: str, room: str, to: str, console: Console, keys: str = ""
+    protocol: Kind,
+    endpoint: str,
+    room: str,
+    to: str,
+    console: Console,
+    keys: str = "",
+    wait_s: float = WAIT_S,
 ) -> int:
     """Forward every body and posture, by VMC and LSL the first person's alone.
 
@@ -31,6 +37,7 @@ def bridge(
         to: `HOST:PORT` to which OSC and VMC are sent, at which a WebSocket is opened.
         console: Shows what the bridge waits for.
         keys: Folder of a client's keys, where the run has keys.
+        wait_s: Longest wait for the run, in seconds.
 
     Returns:
         The number of bodies sent.
@@ -39,16 +46,16 @@ def bridge(
         BridgeError: When the protocol's library is missing, or `to` is no address.
         PageError: When a WebSocket cannot be opened at `to`.
         KeysError: When a key is missing.
-        BusError: When no run answers within a minute.
+        BusError: When no run answers within `wait_s`.
     """
     if keys:
         refuse_missing(Path(keys), "client")
-    bodies = subscribe(endpoint, room, keys=keys)
-    postures = subscribe(endpoint, room, kind=Posture, keys=keys)
+    bodies = subscribe(endpoint, room, wait_s=wait_s, keys=keys)
+    postures = subscribe(endpoint, room, kind=Posture, wait_s=wait_s, keys=keys)
     with closing(sender_of(protocol, to)) as sender:
         if sender.address:
             say(console, f"bodies and postures at {sender.address}")
-        waits = f"waiting for a run at {endpoint} (room {room}), at most {WAIT_S:.0f} s"
+        waits = f"waiting for a run at {endpoint} (room {room}), at most {wait_s:.0f} s"
         say(console, waits)
         return _forward(sender, bodies, postures)
 
