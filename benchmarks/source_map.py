@@ -7,6 +7,7 @@ import subprocess
 import tokenize
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping
+from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
@@ -190,6 +191,7 @@ def _imports(root: Path, nodes: Iterable[ast.AST]) -> Iterator[str]:
                 yield whole if file_of(root, whole) else str(node.module)
 
 
+@cache
 def file_of(root: Path, module: str) -> Path | None:
     """The file of one of our modules, from the checkout's top; None where it is not ours."""
     stem = Path(*module.split("."))

@@ -5,7 +5,7 @@ import pickle
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import pytest
 from hypothesis import settings
@@ -126,34 +126,35 @@ def three_views(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="session")
-def tracked_clip(clip: Path, tmp_path_factory: pytest.TempPathFactory) -> "Tracked":
-    """What is made of that clip by default, by both views."""
-
-    def track(out: Path) -> None:
-        from common.config.settings import Settings
-        from runtime.offline.lockstep import Decoders, track_clip
-
-        with Decoders() as decoders:
-            tracked = track_clip(Settings(clip=str(clip)), decoders)
-        (out / "tracked").write_bytes(pickle.dumps(tracked))
-
-    folder = made_once(tmp_path_factory, "tracked", track)
-    tracked: Tracked = pickle.loads((folder / "tracked").read_bytes())
-    return tracked
-
-
-@pytest.fixture(scope="session")
 def recorded_run(clip: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The folder of the same with its recording."""
+    """The folder of what is made of that clip by default, by both views, with its recording."""
 
     def record(out: Path) -> None:
         from rich.console import Console
 
-        from runtime.offline.batch import Asked, track_all
+        from runtime.offline import batch
 
-        track_all([clip], out, Asked(record=True), Console(quiet=True))
+        done: list[Tracked] = []
+        track = batch.track_clip
+
+        def kept(*given: Any, **named: Any) -> "Tracked":
+            tracked = track(*given, **named)
+            done.append(tracked._replace(bodies=[*tracked.bodies]))
+            return tracked
+
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(batch, "track_clip", kept)
+            batch.track_all([clip], out, batch.Asked(record=True), Console(quiet=True))
+        (out / "tracked").write_bytes(pickle.dumps(*done))
 
     return made_once(tmp_path_factory, "recorded", record) / clip.name
+
+
+@pytest.fixture(scope="session")
+def tracked_clip(recorded_run: Path) -> "Tracked":
+    """The same, before it was written."""
+    tracked: Tracked = pickle.loads((recorded_run.parent / "tracked").read_bytes())
+    return tracked
 
 
 @pytest.fixture(scope="module")

@@ -3,8 +3,10 @@
 import io
 import os
 import re
+import shutil
 from html.parser import HTMLParser
 from pathlib import Path
+from typing import NamedTuple
 
 import cv2
 import numpy as np
@@ -55,8 +57,24 @@ class Loaded(HTMLParser):
             assert self.opened.pop() == tag
 
 
-def test_the_page_says_what_was_followed_when_it_was_believed_and_why_not(tmp_path: Path) -> None:
-    html, said = reported(written(tmp_path, walking(), followed=0.667, believed=0.64))
+class Report(NamedTuple):
+    """A run's folder, its page, and what the terminal shows."""
+
+    folder: Path
+    html: str
+    said: str
+
+
+@pytest.fixture(scope="module")
+def walk(tmp_path_factory: pytest.TempPathFactory) -> Report:
+    """Who changes its folder copies it before."""
+    told = {"followed": 0.667, "believed": 0.64, "warnings": ["<img src=x> & more"]}
+    folder = written(tmp_path_factory.mktemp("walk"), walking(), **told)
+    return Report(folder, *reported(folder))
+
+
+def test_the_page_says_what_was_followed_when_it_was_believed_and_why_not(walk: Report) -> None:
+    html = walk.html
     text = " ".join(re.sub(r"<[^>]+>", " ", re.sub(r"(?s)<style>.*?</style>", "", html)).split())
     assert "cameras that saw a person cam1, cam2" in text
     assert "followed, of frames with a person 67%" in text
@@ -65,13 +83,11 @@ def test_the_page_says_what_was_followed_when_it_was_believed_and_why_not(tmp_pa
     )
     assert "0.70 to 1.00 s: not believed: a person is seen, and no pose fits" in text
     assert "frame 7, 0.70 s, lost" in text
-    assert said == ""
+    assert walk.said == ""
 
 
-def test_the_page_loads_nothing_and_its_pictures_are_in_it(tmp_path: Path) -> None:
-    folder = written(tmp_path, walking(), warnings=["<img src=x> & more"])
-    html, _ = reported(folder)
-    page = Loaded()
+def test_the_page_loads_nothing_and_its_pictures_are_in_it(walk: Report) -> None:
+    html, page = walk.html, Loaded()
     page.feed(html)
     assert page.opened == []
     assert page.asked, "the worst frames"
@@ -83,12 +99,10 @@ def test_the_page_loads_nothing_and_its_pictures_are_in_it(tmp_path: Path) -> No
     assert "&lt;img src=x&gt; &amp; more" in html
 
 
-def test_the_video_has_a_picture_for_each_row(tmp_path: Path) -> None:
-    folder = written(tmp_path, walking())
-    html, _ = reported(folder)
-    name = re.search(r'<a href="(overlay\.\w+)"', html)
+def test_the_video_has_a_picture_for_each_row(walk: Report) -> None:
+    name = re.search(r'<a href="(overlay\.\w+)"', walk.html)
     assert name is not None
-    video = cv2.VideoCapture(str(folder / name[1]))
+    video = cv2.VideoCapture(str(walk.folder / name[1]))
     assert video.get(cv2.CAP_PROP_FRAME_COUNT) == 10
     assert video.get(cv2.CAP_PROP_FPS) == pytest.approx(10.0)
     assert video.get(cv2.CAP_PROP_FRAME_WIDTH) == 320
@@ -120,11 +134,10 @@ def test_each_of_several_people_has_a_part(tmp_path: Path) -> None:
     assert len(re.findall("<img", html)) == 2
 
 
-def test_a_run_that_is_written_anew_loses_its_report(tmp_path: Path) -> None:
-    folder = written(tmp_path, walking())
-    reported(folder)
+def test_a_run_that_is_written_anew_loses_its_report(walk: Report, tmp_path: Path) -> None:
+    folder = Path(shutil.copytree(walk.folder, tmp_path / walk.folder.name))
     assert (folder / "report.html").exists()
-    written(tmp_path, walking())
+    assert written(tmp_path, walking()) == folder
     assert sorted(path.name for path in folder.iterdir() if path.name != "angles.png") == [
         *("poses.npz", "summary.json")
     ]
