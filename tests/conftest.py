@@ -132,20 +132,18 @@ def recorded_run(clip: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     def record(out: Path) -> None:
         from rich.console import Console
 
-        from runtime.offline import batch
-
-        done: list[Tracked] = []
-        track = batch.track_clip
+        from runtime.offline.batch import Asked, track_all
+        from runtime.offline.lockstep import track_clip
 
         def kept(*given: Any, **named: Any) -> "Tracked":
-            tracked = track(*given, **named)
-            done.append(tracked._replace(bodies=[*tracked.bodies]))
+            tracked = track_clip(*given, **named)
+            whole = tracked._replace(bodies=[*tracked.bodies])
+            (out / "tracked").write_bytes(pickle.dumps(whole))
             return tracked
 
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(batch, "track_clip", kept)
-            batch.track_all([clip], out, batch.Asked(record=True), Console(quiet=True))
-        (out / "tracked").write_bytes(pickle.dumps(*done))
+            patch.setattr("runtime.offline.batch.track_clip", kept)
+            track_all([clip], out, Asked(record=True), Console(quiet=True))
 
     return made_once(tmp_path_factory, "recorded", record) / clip.name
 

@@ -136,9 +136,11 @@ def test_a_constant_that_changed_in_another_file_is_noticed(house: Path) -> None
 def test_of_older_sources_the_newest_stay(house: Path) -> None:
     assert FEW != KEPT
     for step in range(FEW + 2):
+        before = kept(house)
         (house / "viewer" / "callee.py").write_text(CALLEE.replace("+ 1", f"+ {step}"))
         assert answer(house, "-c", ASK) == str(1 + 2 * step)
     assert len(kept(house)) == 2 * FEW
+    assert len(kept(house).keys() - before.keys()) == 2, "the newest among them"
     before = kept(house)
     assert answer(house, "-c", ASK) == str(1 + 2 * (FEW + 1))
     assert kept(house) == before

@@ -111,6 +111,24 @@ def test_the_run_is_in_the_mode_of_the_model_and_beside_it(
     assert ran == [(kind, tmp_path / f"mine_{NEW}", NEW)]
 
 
+def test_a_posture_is_taught_again_where_that_is_asked_for(
+    plan: Plan, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    takes = [perform(NEW, n) for n in range(3)]
+
+    def live(_: Settings, _run: Path, _console: Console, name: str, tell: Teaching) -> None:
+        tell.lesson = taught(tell._known, name, takes, ["live"])
+
+    monkeypatch.setattr(live_teaching, "live", live)
+    out, quiet = tmp_path / "mine.npz", Console(quiet=True)
+    assert not teach_live(NEW, Settings(), out, plan, quiet)["again"]
+    mine = plan._replace(add_to=out)
+    with pytest.raises(TrainingError, match="known already: --again"):
+        teach_live(NEW, Settings(), out, mine, quiet)
+    assert teach_live(NEW, Settings(), out, mine._replace(again=True), quiet)["again"]
+    assert load(out).names == (*KNOWN, NEW)
+
+
 @pytest.mark.slow
 @pytest.mark.live
 def test_a_recording_that_plays_as_live_teaches_a_posture(plan: Plan, tmp_path: Path) -> None:
@@ -124,10 +142,6 @@ def test_a_recording_that_plays_as_live_teaches_a_posture(plan: Plan, tmp_path: 
     facts = teach_live("both_up", settings, out, plan, Console(quiet=True), 0.0)
     assert len(facts["takes"]) == 3
     assert all(take["margin"] > 0.0 for take in facts["takes"])
-    assert load(out).names == (*KNOWN, "both_up")
-    again = plan._replace(add_to=out, again=True)
-    facts = teach_live("both_up", settings, out, again, Console(quiet=True), 0.0)
-    assert facts["again"]
     assert load(out).names == (*KNOWN, "both_up")
 
 

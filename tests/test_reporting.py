@@ -68,8 +68,9 @@ class Report(NamedTuple):
 @pytest.fixture(scope="module")
 def walk(tmp_path_factory: pytest.TempPathFactory) -> Report:
     """Who changes its folder copies it before."""
-    told = {"followed": 0.667, "believed": 0.64, "warnings": ["<img src=x> & more"]}
-    folder = written(tmp_path_factory.mktemp("walk"), walking(), **told)
+    warned = ["<img src=x> & more"]
+    out = tmp_path_factory.mktemp("walk")
+    folder = written(out, walking(), followed=0.667, believed=0.64, warnings=warned)
     return Report(folder, *reported(folder))
 
 

@@ -53,9 +53,9 @@ with open_client(settings.bus, settings.room, 120.0) as bus, open(sys.argv[2], "
                 message = box.take(0.0)
         file.flush()
 """
-FRAMES: Final = 450
-"""Half a minute, for a cable that is cut and mended."""
-FEW: Final = 225
+FRAMES: Final = 390
+"""Nearly half a minute, for a cable that is cut and mended."""
+FEW: Final = 135
 """For a cable that stays as it is from the first frame to the last."""
 WAIT_S: Final = 150.0
 NEAR_M: Final = 0.02
