@@ -12,6 +12,7 @@ import pytest
 from staging import report
 
 from calibration.person.rig_quality import PersonCalibration, Quality
+from calibration.tracks.joint_tracks import JointTrack, track_of
 from calibration.tracks.lateness import Clock
 from common.body.observation import Box, Landmarks
 from common.bus.messages import View, ViewerNumber
@@ -271,6 +272,22 @@ def test_each_view_is_looked_at_with_its_own_state(monkeypatch: pytest.MonkeyPat
     assert second.times_s.tolist() == [0.1, 0.2]
     assert size_px == (160, 120)
     assert second.joints_px[0].tolist() == [list(place) for place in LANDMARKS.joints_px]
+
+
+def test_where_views_show_several_people_one_of_them_is_taken(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    Pass(monkeypatch, 3)
+    asked: list[list[list[View]]] = []
+
+    def chosen(views: list[list[View]]) -> list[JointTrack]:
+        asked.append(views)
+        return [track_of(own[:1]) for own in views]
+
+    monkeypatch.setattr(rig_from_person, "person_tracks", chosen)
+    (first, second), _ = sightings_of(first_two(), Settings(), METHOD, {}, {})
+    assert [len(own) for own in asked[0]] == [3, 2]
+    assert (first.times_s.tolist(), second.times_s.tolist()) == ([0.0], [0.1])
 
 
 def test_landmarks_are_in_pixels_of_the_first_views_pictures(

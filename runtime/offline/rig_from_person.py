@@ -9,8 +9,9 @@ import numpy as np
 from calibration.gate.odd_camera import OddCamera
 from calibration.person.rig_quality import PersonCalibration
 from calibration.tracks.camera_clocks import Clocks, clocks_of
-from calibration.tracks.joint_tracks import JointTrack, Sightings, track_of
+from calibration.tracks.joint_tracks import JointTrack, Sightings
 from calibration.tracks.lateness import LEAST_LATE, Clock
+from calibration.tracks.one_of_several import person_tracks
 from common.bus.messages import View, ViewerNumber
 from common.config.settings import Settings
 from common.method import Method
@@ -78,8 +79,9 @@ def sightings_of(
         if n + 1 == MOST_FRAMES or is_moved:
             break
     size = clip.views[0].size
-    tracks = tuple(_in_size(track_of(reports[view.number]), view, size) for view in clip.views)
-    return Sightings(tracks, size)
+    found = person_tracks([reports[view.number] for view in clip.views])
+    views = zip(found, clip.views, strict=True)
+    return Sightings(tuple(_in_size(track, view, size) for track, view in views), size)
 
 
 def _in_size(track: JointTrack, view: ClipView, size: Size) -> JointTrack:
