@@ -14,6 +14,7 @@ from common.body.stick_body import ADULT
 from common.bus.messages import Lifting
 from common.method import DEFAULT
 from common.rig.camera import centre, project
+from integrator.proposal import pose_proposal
 from integrator.single import single_view
 from integrator.single.floor_depth import ANKLE, ANKLES, PELVIS, SURE, feet_depth, known, step
 from integrator.single.sight import Annotations, Hypothesis, Sight
@@ -99,6 +100,43 @@ def test_who_was_seen_by_two_views_does_not_jump_when_one_is_left() -> None:
     memory, body = step(known(CAMERA, STANDING_M), sight_of(None), away(0.6))
     assert 0.0 < memory.depth_m - DEPTH_M < 0.3
     assert known(CAMERA, body.joints_m).depth_m == pytest.approx(memory.depth_m)
+
+
+@pytest.mark.parametrize(("silhouette_m", "landmarks_m"), [(-0.6, 0.0), (0.0, -0.6)])
+def test_the_farther_of_silhouette_and_landmarks_counts(
+    silhouette_m: float, landmarks_m: float
+) -> None:
+    """Others in the silhouette make it larger, and the body nearer."""
+    proposed = away(silhouette_m)
+    lifted_m = away(landmarks_m).joints_m[PELVIS]
+    memory, body = step(known(CAMERA, STANDING_M), sight_of(None), proposed, lifted_m)
+    assert memory.depth_m == pytest.approx(DEPTH_M)
+    assert known(CAMERA, body.joints_m).depth_m == pytest.approx(DEPTH_M)
+
+
+@pytest.mark.parametrize("on_floor", [True, False])
+def test_beside_others_a_single_view_is_told_where_landmarks_have_the_hips(
+    monkeypatch: pytest.MonkeyPatch, on_floor: bool
+) -> None:
+    lifted_m = away(0.3).joints_m[PELVIS]
+    found = pose_proposal.PoseProposal(
+        STANDING_M[pose_proposal.AT],
+        np.ones(15),
+        pose_proposal.Memory(None, None, 0.0),
+        lifted_m,
+    )
+    asked: list[bool] = []
+
+    def proposed(*given: object, at_once: bool) -> pose_proposal.PoseProposal:
+        asked.append(at_once)
+        return found
+
+    monkeypatch.setattr(pose_proposal, "step", proposed)
+    sight = sight_of(None, on_floor=on_floor)
+    seen = single_view.step(None, single_view.begun(sight, STANDING_M), sight)
+    assert asked == [on_floor]
+    farther_m = known(CAMERA, seen.body.joints_m).depth_m - DEPTH_M
+    assert (farther_m > 0.02) == on_floor
 
 
 def test_a_depth_that_was_quite_wrong_is_given_up_within_three_instants() -> None:

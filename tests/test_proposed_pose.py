@@ -203,6 +203,23 @@ def test_one_view_is_alone_for_as_long_as_it_has_been(networks: Networks) -> Non
     assert pose_proposal.step(known, BODY, ROLLED, alone, 0.5).memory.alone_s == 2.5
 
 
+def test_beside_others_landmarks_are_lifted_in_fully_as_soon_as_one_view_is_alone(
+    networks: Networks,
+) -> None:
+    """As of who was alone for ever; no sooner where both views show the person."""
+    outlines = pose_proposal.step(None, BODY, ROLLED, both_shown(), 1 / 15).memory.outlines
+    alone, both = both_shown(second=False), both_shown()
+
+    def joints_m(seen: Seen, alone_s: float, at_once: bool) -> Vector:
+        known = Memory(outlines, None, alone_s)
+        return pose_proposal.step(known, BODY, ROLLED, seen, 1 / 15, at_once=at_once).joints_m
+
+    fully_m = joints_m(alone, math.inf, False)
+    assert joints_m(alone, 0.0, True) == pytest.approx(fully_m)
+    assert not np.allclose(joints_m(alone, 0.0, False), fully_m)
+    assert joints_m(both, 0.0, True) == pytest.approx(joints_m(both, 0.0, False))
+
+
 @pytest.mark.parametrize("larger", [1, 2])
 def test_of_two_things_that_no_one_person_casts_the_larger_is_looked_at(
     networks: Networks, larger: int

@@ -212,7 +212,7 @@ def test_a_body_that_trembles_along_the_line_of_sight_is_kept_where_it_was(
         monkeypatch.setattr(
             lone_proposal, "_with_landmarks", lambda *_, seen_m=seen_m: (seen_m, np.ones(15), None)
         )
-        body, memory, alone = single_view.step(memory, alone, sight._replace(dt_s=1 / 15))
+        body, memory, alone, _ = single_view.step(memory, alone, sight._replace(dt_s=1 / 15))
         found.append(np.linalg.norm(body.joints_m - centre(CAMERA), axis=1))
     assert np.abs(np.diff(found[20:], axis=0)).max() < 0.003
     assert found[-1] == pytest.approx(np.linalg.norm(off_m, axis=1), abs=0.004)
@@ -279,7 +279,7 @@ def test_a_lifted_body_goes_before_a_proposed_one_that_fits_badly(
     two = a_body(lifted)._replace(joints_m=one.joints_m - [farther_px / 200.0 * 4.375, 0.0, 0.0])
     signs = depth_signs.init()._replace(turning=np.full((10, 3), 7.0))
     depth = calm_depth.step(None, centre(CAMERA), one.joints_m, 0.1)[0]
-    seen = lone_proposal.Proposed(one, agrees, None, Front(0.2), None, depth)  # type: ignore[arg-type]
+    seen = lone_proposal.Proposed(one, agrees, None, Front(0.2), None, depth, None)  # type: ignore[arg-type]
     monkeypatch.setattr(lone_proposal, "step", lambda before, given: seen)
     monkeypatch.setattr(lifted_stick, "step", lambda memory, given: (signs, two))
     found = single_view.step(None, single_view.begun(sight, None), sight)
@@ -374,7 +374,7 @@ def test_a_proposal_is_turned_about_and_shown_otherwise_where_front_is_asked_for
         pose_proposal.Memory(None, None, 0.0),
     )
     up_m = np.array([0.0, 1.0, 0.0])
-    monkeypatch.setattr(pose_proposal, "step", lambda *_: found)
+    monkeypatch.setattr(pose_proposal, "step", lambda *_, at_once: found)
     monkeypatch.setattr(pose_proposal, "up_of", lambda *_: up_m if lies else None)
     monkeypatch.setattr(reflection, "front_of", front_of)
     monkeypatch.setattr(reflection, "seen_from_behind", lambda _, joints_m: joints_m + 100.0 * up_m)

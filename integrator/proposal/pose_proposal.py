@@ -91,6 +91,8 @@ class PoseProposal(NamedTuple):
     confidence: Vector
     """(15,) probability that each landmark is less than 50 mm off."""
     memory: Memory
+    lifted_m: Vector | None = None
+    """(3,) the middle of the hips of the lifted joints alone; None: there are none."""
 
     @property
     def is_confident(self) -> bool:
@@ -106,6 +108,8 @@ def step(
     since_s: float,
     up: Vector | None = None,
     lifts: bool = True,
+    *,
+    at_once: bool = False,
 ) -> PoseProposal:
     """The joints proposed by silhouettes, by whole ones where there are any, and by landmarks.
 
@@ -121,6 +125,8 @@ def step(
         since_s: Time since the instant before.
         up: (3,) direction to the head of a person who leans far or lies, world; None: upright.
         lifts: Whether landmarks are lifted.
+        at_once: Lifted joints count fully as soon as one view is alone: its silhouette may hold
+            others too.
     """
     any_whole = any(person is not None and not person.cut for person in seen)
     first, second = (
@@ -142,8 +148,11 @@ def step(
         lifting, lifted = _lifted(before.lifting, seen, rig, height_m, since_s)
     alone_s = before.alone_s + since_s if None in seen else 0.0
     if lifted is not None and (None in seen or up is not None):
-        joints_m, confidence = _joined(joints_m, confidence, lifted, alone_s)
-    return PoseProposal(joints_m, of_landmarks(confidence), Memory(outlines, lifting, alone_s))
+        counts_s = math.inf if at_once and alone_s else alone_s
+        joints_m, confidence = _joined(joints_m, confidence, lifted, counts_s)
+    after = Memory(outlines, lifting, alone_s)
+    hips_m = None if lifted is None else _hips_m(lifted.joints_m)
+    return PoseProposal(joints_m, of_landmarks(confidence), after, hips_m)
 
 
 def _lifted(

@@ -63,21 +63,26 @@ def known(camera: Camera, joints_m: NDArray[np.float64]) -> Memory:
     return _begun(Depth(_depth_m(camera, joints_m[PELVIS]), KNOWN_M**2))
 
 
-def step(memory: Memory | None, sight: Sight, body: Hypothesis) -> tuple[Memory, Hypothesis]:
+def step(
+    memory: Memory | None, sight: Sight, body: Hypothesis, lifted_m: Vector | None = None
+) -> tuple[Memory, Hypothesis]:
     """One instant: the body, moved along its line of sight to its most probable depth.
 
-    A silhouette tells the depth by its size, and wrongly where others hide a part of the person.
-    The floor tells it where both feet are seen.
+    A silhouette tells the depth by its size: where others are in it, it is too large, and the depth
+    too small. Landmarks tell it by their size too: the larger of both depths counts. The floor
+    tells it where both feet are seen.
 
     Args:
         memory: None at the first instant.
         sight: The view, of a rig whose floor is known.
         body: As proposed.
+        lifted_m: (3,) the middle of the hips by the landmarks alone; None: they show none.
     """
     camera = undistorted_camera(sight.camera)
     proposed_m = _depth_m(camera, body.joints_m[PELVIS])
+    size_m = proposed_m if lifted_m is None else max(proposed_m, _depth_m(camera, lifted_m))
     feet = feet_depth(camera, sight.person.landmarks, ANKLE * sight.stature_m)
-    shown = [Depth(proposed_m, PROPOSED_M**2)] + ([] if feet is None else [feet])
+    shown = [Depth(size_m, PROPOSED_M**2)] + ([] if feet is None else [feet])
     after = _begun(shown.pop(0)) if memory is None else _foreseen(memory, sight.dt_s)
     for each in shown:
         after = _with(after, each)

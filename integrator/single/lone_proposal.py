@@ -40,6 +40,8 @@ class Proposed(NamedTuple):
     front: Front | None
     landmarks: landmark_fusion.Memory | None
     depth: calm_depth.Memory
+    lifted_m: Vector | None
+    """(3,) the middle of the hips by the landmarks alone."""
 
 
 class Before(NamedTuple):
@@ -69,7 +71,14 @@ def step(before: Before, sight: Sight) -> Proposed:
     rig = undistorted_rig(sight.rig)
     up = pose_proposal.up_of(sight.bdp, sight.before)
     known = pose_proposal.step(
-        before.memory, sight.bdp, rig, sight.seen, sight.dt_s, up, sight.method.lifting
+        before.memory,
+        sight.bdp,
+        rig,
+        sight.seen,
+        sight.dt_s,
+        up,
+        sight.method.lifting,
+        at_once=sight.on_floor,
     )
     joints_m = _with_trunk(sight, known.joints_m)
     if sight.method.reflection and front is not None and up is None:
@@ -96,7 +105,7 @@ def step(before: Before, sight: Sight) -> Proposed:
     )
     score = stick_similarity(sight, joints_m)
     found = Hypothesis(joints_m, pose, score, confidence, lifting)
-    return Proposed(found, agrees, known.memory, front, landmarks, depth)
+    return Proposed(found, agrees, known.memory, front, landmarks, depth, known.lifted_m)
 
 
 def _shown(person: Observation) -> tuple[float, float] | None:

@@ -5,6 +5,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from common.body.body import Vector
 from common.bus.messages import Lifting, ViewerNumber
 from common.rig.camera import TOWARDS, arrays_of, project
 from integrator.landmarks import landmark_fusion
@@ -54,6 +55,8 @@ class Found(NamedTuple):
     body: Hypothesis
     memory: Memory | None
     alone: Alone
+    lifted_m: Vector | None = None
+    """(3,) the middle of the hips by the landmarks alone; None: they show none."""
 
 
 def begun(sight: Sight, joints_m: NDArray[np.float64] | None, other: Alone | None = None) -> Alone:
@@ -91,7 +94,7 @@ def step(memory: Memory | None, alone: Alone, sight: Sight) -> Found:
     found = _proposed_or_lifted(memory, alone, sight)
     if not sight.on_floor:
         return found
-    place, body = floor_depth.step(alone.place, sight, found.body)
+    place, body = floor_depth.step(alone.place, sight, found.body, found.lifted_m)
     return found._replace(body=body, alone=found.alone._replace(place=place))
 
 
@@ -105,16 +108,19 @@ def _proposed_or_lifted(memory: Memory | None, alone: Alone, sight: Sight) -> Fo
     )
     if suffices or sight.person.stick is None:
         signs = _witnessed(sight, alone.signs, body.joints_m, body.lifting.orientation_confidence)
-        return _found(body, seen.memory, alone._replace(signs=signs))
+        return _found(body, seen.memory, alone._replace(signs=signs), seen.lifted_m)
     signs, lifted = lifted_stick.step(alone.signs, sight)
     fits = lifted.score >= SURELY * body.score
     if not seen.agrees or (fits and _off_px(sight, lifted) <= _off_px(sight, body)):
         body = lifted
-    return _found(body, seen.memory, alone._replace(signs=signs))
+    return _found(body, seen.memory, alone._replace(signs=signs), seen.lifted_m)
 
 
-def _found(body: Hypothesis, memory: Memory | None, alone: Alone) -> Found:
-    return Found(body, memory, alone._replace(score=body.score, lifting=body.lifting))
+def _found(
+    body: Hypothesis, memory: Memory | None, alone: Alone, lifted_m: Vector | None = None
+) -> Found:
+    alone = alone._replace(score=body.score, lifting=body.lifting)
+    return Found(body, memory, alone, lifted_m)
 
 
 def _off_px(sight: Sight, body: Hypothesis) -> float:
