@@ -114,9 +114,11 @@ def test_the_farther_of_silhouette_and_landmarks_counts(
     assert known(CAMERA, body.joints_m).depth_m == pytest.approx(DEPTH_M)
 
 
-@pytest.mark.parametrize("on_floor", [True, False])
-def test_beside_others_a_single_view_is_told_where_landmarks_have_the_hips(
-    monkeypatch: pytest.MonkeyPatch, on_floor: bool
+@pytest.mark.parametrize(
+    ("on_floor", "only", "told"), [(True, False, True), (False, False, False), (True, True, False)]
+)
+def test_beside_others_one_of_several_views_is_told_where_landmarks_have_the_hips(
+    monkeypatch: pytest.MonkeyPatch, on_floor: bool, only: bool, told: bool
 ) -> None:
     lifted_m = away(0.3).joints_m[PELVIS]
     found = pose_proposal.PoseProposal(
@@ -133,10 +135,13 @@ def test_beside_others_a_single_view_is_told_where_landmarks_have_the_hips(
 
     monkeypatch.setattr(pose_proposal, "step", proposed)
     sight = sight_of(None, on_floor=on_floor)
+    if only:
+        rig = msgspec.structs.replace(RIG, cameras=(CAMERA, CAMERA))
+        sight = sight._replace(rig=rig)
     seen = single_view.step(None, single_view.begun(sight, STANDING_M), sight)
     assert asked == [on_floor]
     farther_m = known(CAMERA, seen.body.joints_m).depth_m - DEPTH_M
-    assert (farther_m > 0.02) == on_floor
+    assert (farther_m > 0.02) == told
 
 
 def test_a_depth_that_was_quite_wrong_is_given_up_within_three_instants() -> None:

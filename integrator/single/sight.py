@@ -63,8 +63,13 @@ class Sight(NamedTuple):
     def seen(self) -> TwoSeen:
         """The person at the index of their camera; the only camera of a rig counts as its first,
         and proposals see its person from the front."""
+        return (self.person, None) if self.place == 0 or self.is_only else (None, self.person)
+
+    @property
+    def is_only(self) -> bool:
+        """Whether the rig has no other camera."""
         first, second = self.rig.cameras
-        return (self.person, None) if self.place == 0 or first == second else (None, self.person)
+        return first == second
 
     @property
     def stature_m(self) -> float:

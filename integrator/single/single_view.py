@@ -94,7 +94,8 @@ def step(memory: Memory | None, alone: Alone, sight: Sight) -> Found:
     found = _proposed_or_lifted(memory, alone, sight)
     if not sight.on_floor:
         return found
-    place, body = floor_depth.step(alone.place, sight, found.body, found.lifted_m)
+    lifted_m = None if sight.is_only else found.lifted_m  # no better there (docs/measurements.md)
+    place, body = floor_depth.step(alone.place, sight, found.body, lifted_m)
     return found._replace(body=body, alone=found.alone._replace(place=place))
 
 
