@@ -89,7 +89,7 @@ def test_a_rig_is_found_from_pictures_as_well(
     seed: int, size: tuple[int, int], square_m: float
 ) -> None:
     """Blurred, noisy, bent by the lenses."""
-    rig = random_rig(seed, size, BOARDS["a3"]._replace(square_m=square_m))
+    rig = random_rig(seed, size, BOARDS["a3"]._replace(square_m=square_m), 24)
     found = calibrated_by_board(filmed(rig, 2 * seed), rig.board)
     assert found.quality.reprojection_px < 0.3
     for off_mm, turned_deg in errors(found, rig):
