@@ -77,7 +77,8 @@ RESULTS: Final = {
 
 FEW: Final = {
     "tritrack track clips": "s0[01]*squat",
-    "tritrack train clips/*/": "s0[01]*",
+    "tritrack evaluate tracking": "s02*squat",
+    "tritrack train clips/*/": "s00*",
     "tritrack calibrate person": "s00*",
 }
 """Commands that need no more of the clips than these, whatever the README's pattern would take: of
