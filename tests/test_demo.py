@@ -92,7 +92,7 @@ def test_of_two_in_the_demo_each_ones_posture_is_recognised(tmp_path: Path) -> N
     """In lock-step, as a live run on a machine that keeps up is equal to it; who is who is told by
     where the truth has them."""
     clip = demo.made_scene(tmp_path, 2, 2)
-    settings = Settings(clip=str(clip), people="all")
+    settings = Settings(clip=str(clip), size="320x240", people="all")
     with Decoders() as decoders:
         tracked = track_clip(settings, decoders)
     state = everyone.init(recogniser.init(model_of(settings), settings.recognizer.window_frames))
@@ -162,6 +162,7 @@ def test_a_demo_runs_its_clip_with_pictures_on_a_page_if_one_is_wanted(
         assert demo.run_demo(tmp_path, page, said, wait) == {"posture": demo.POSTURE}
     (first, out), (second, _), (third, _) = asked
     assert (first.pictures, first.page.wait, second.page.wait) == (True, False, True)
+    assert first.size == "320x240", "its figures are told for pictures of this size"
     assert (first.page.port > 0, second.page.port > 0, third.page.port) == (True, True, 0)
     assert (out, Path(first.clip).parent.exists()) == (tmp_path, False)
     assert isinstance(said.file, io.StringIO)

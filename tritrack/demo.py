@@ -108,7 +108,10 @@ def run_demo(
         else:
             clip = made_scene(Path(folder), people, cameras)
         follows: Literal[1, "all"] = 1 if people == 1 else "all"
-        settings = free_settings(Settings(clip=str(clip), pictures=True, people=follows))
+        wide, high = SIZE
+        settings = free_settings(
+            Settings(clip=str(clip), size=f"{wide}x{high}", pictures=True, people=follows)
+        )
         port = settings.page.port if page else 0
         settings = msgspec.structs.replace(settings, page=PageSettings(port, wait))
         console.print(f"the bus: {settings.bus.endpoint}", highlight=False)
