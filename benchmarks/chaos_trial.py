@@ -157,11 +157,11 @@ class Trial:
 
 def people_in(poses: Arrays) -> str:
     """Of each of several people: the number, rows, and share of them that are believed."""
-    told = []
+    lines = []
     for number in people_of(poses):
         own = poses["status"][poses["person"] == number]
-        told.append(f"{number}: {len(own)} rows, {np.isin(own, BELIEVED).mean():.0%}")
-    return "" if people_of(poses) == (0,) else ", ".join(told)
+        lines.append(f"{number}: {len(own)} rows, {np.isin(own, BELIEVED).mean():.0%}")
+    return "" if people_of(poses) == (0,) else ", ".join(lines)
 
 
 def who_is_who(poses: Arrays, clip: Path) -> str:
@@ -171,12 +171,12 @@ def who_is_who(poses: Arrays, clip: Path) -> str:
         return ""
     with np.load(clip / "truth.npz") as file:
         truth = dict(file)
-    told = [
+    lines = [
         f"; {one.who} from {one.first / FPS:.1f} to {one.last / FPS:.1f} s as {one.number} "
         f"({one.share:.0%})"
         for one in presences(gaps_of(poses, truth), AWAY_FRAMES)
     ]
-    return "".join(told)
+    return "".join(lines)
 
 
 def spoken_of(processes: Sequence[psutil.Process], word: str) -> list[psutil.Process]:

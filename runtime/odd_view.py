@@ -62,9 +62,9 @@ def odd_camera_warnings(facts: Facts) -> list[str]:
     ]
 
 
-def live_odd_camera_facts(clip: Clip, told: Sequence[Cameras]) -> Facts:
+def live_odd_camera_facts(clip: Clip, rigs: Sequence[Cameras]) -> Facts:
     """The same for a live run, of the rigs that it announced."""
-    last = next((each for each in reversed(told) if each.odd is not None), None)
+    last = next((each for each in reversed(rigs) if each.odd is not None), None)
     if last is None or last.odd is None:
         return {}
     odd = OddCamera(place_in_rig(last.odd.camera), *msgspec.structs.astuple(last.odd)[1:])

@@ -162,7 +162,7 @@ def test_a_demo_runs_its_clip_with_pictures_on_a_page_if_one_is_wanted(
         assert demo.run_demo(tmp_path, page, said, wait) == {"posture": demo.POSTURE}
     (first, out), (second, _), (third, _) = asked
     assert (first.pictures, first.page.wait, second.page.wait) == (True, False, True)
-    assert first.size == "320x240", "its figures are told for pictures of this size"
+    assert first.size == "320x240", "its figures are of pictures of this size"
     assert (first.page.port > 0, second.page.port > 0, third.page.port) == (True, True, 0)
     assert (out, Path(first.clip).parent.exists()) == (tmp_path, False)
     assert isinstance(said.file, io.StringIO)

@@ -11,8 +11,10 @@ from calibration.tracks.joint_tracks import (
     MOST_FRAMES,
     JointTrack,
     Sighting,
+    Sightings,
     at_times,
     height_px,
+    longest_seen,
     row_of,
     smoothed,
     track_of,
@@ -177,3 +179,14 @@ def test_a_persons_height_is_that_of_most_frames_from_crown_to_between_the_ankle
     track.joints_px[:, crown] = [(50.0, 95.0 - tall) for tall in (*range(40, 46), 60, 61, 62, 900)]
     track.confidence[9] = 0.39
     assert height_px(track) == pytest.approx(np.percentile([*range(40, 46), 60, 61, 62], 70))
+
+
+def test_who_one_view_alone_shows_long_is_no_evidence_about_a_rig() -> None:
+    """Two views judge: the second longest counts, and half of what the longest seen person has."""
+
+    def seen(*frames: int) -> Sightings:
+        return Sightings(tuple(moving(each) for each in frames), (320, 240))
+
+    everyone = seen(40, 90), seen(80, 80), seen(90, 39, 5), seen(20, 100)
+    assert longest_seen(everyone) == (everyone[1], everyone[0])
+    assert longest_seen([]) == ()
